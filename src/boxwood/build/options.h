@@ -1,0 +1,30 @@
+// options.h: how should a tree be built?
+#pragma once
+
+#include "boxwood/core/parallel.h"
+#include "boxwood/core/progress.h"
+
+namespace boxwood {
+
+enum class Method {
+  longest_axis,  ///< Halve the longest axis at its middle: the textbook's, easy to follow, uneven trees.
+  binned_sah,    ///< Surface area heuristic over equal bins: nearly the best tree, fast to build.
+  sweep_sah,     ///< Surface area heuristic over every split of the sorted centers: the judge of the others.
+};
+
+/// Data; the presets are the choices that were measured.
+struct BuildOptions {
+  Method method = Method::binned_sah;
+  int max_depth = 64;            ///< No node deeper than this; 0 to kMaxDepth. A node there is a leaf of any size.
+  int leaf_size = 4;             ///< A node of this many primitives or fewer may become a leaf; at least 1.
+  int bins = 16;                 ///< binned_sah: bins on each axis; 2 to 64.
+  float traversal_cost = 1.0f;   ///< SAH: one box test costs this many shape tests.
+  Executor* executor = nullptr;  ///< Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
+  Progress progress;             ///< Told now and then; returning false throws Cancelled. May be empty.
+
+  static BuildOptions fast();      ///< Shortest time to a usable tree.
+  static BuildOptions balanced();  ///< The default.
+  static BuildOptions best();      ///< Slowest to build, fastest to trace.
+};
+
+}  // namespace boxwood

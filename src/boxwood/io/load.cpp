@@ -1,0 +1,3 @@
+#include "boxwood/io/load.h"
+namespace boxwood::io {
+}

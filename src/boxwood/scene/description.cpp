@@ -1,0 +1,149 @@
+#include "boxwood/scene/description.h"
+
+#include <stdexcept>
+
+namespace boxwood {
+namespace {
+
+constexpr float kMaxCoordinate = 0x1p126f;
+
+[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument("scene: " + what); }
+
+std::string show(Vec3 p) {
+  return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")";
+}
+
+bool is_usable(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+
+void check_mesh(const TriangleMesh& mesh, const std::string& name) {
+  const std::size_t vertices = mesh.positions.size();
+  for (std::size_t i = 0; i < vertices; ++i)
+    if (!is_usable(mesh.positions[i]))
+      fail(name + ", vertex " + std::to_string(i) + " is " + show(mesh.positions[i]) +
+           ", expected finite coordinates of at most 2^126");
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    for (const std::uint32_t index : mesh.indices[i])
+      if (index >= vertices)
+        fail(name + ", triangle " + std::to_string(i) + " has index " + std::to_string(index) + ", but there are " +
+             std::to_string(vertices) + " vertices");
+  const auto check_length = [&](std::size_t length, const char* what) {
+    if (length != 0 && length != vertices)
+      fail(name + " has " + std::to_string(length) + " " + what + ", expected none or one for each of the " +
+           std::to_string(vertices) + " vertices");
+  };
+  check_length(mesh.normals.size(), "normals");
+  check_length(mesh.uvs.size(), "texture coordinates");
+}
+
+void check_shape_boxes(const auto& shapes, const std::string& name) {
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const Box3 box = shapes[i].box();
+    if (!box.is_empty() && !(is_usable(box.lower) && is_usable(box.upper)))
+      fail(name + ", shape " + std::to_string(i) + " reaches from " + show(box.lower) + " to " + show(box.upper) +
+           ", expected finite coordinates of at most 2^126");
+  }
+}
+
+}  // namespace
+
+GeometryId SceneDesc::add(Geometry geometry) {
+  geometries.push_back(std::move(geometry));
+  return GeometryId(geometries.size() - 1);
+}
+GeometryId SceneDesc::add(TriangleMesh mesh, MaterialId material) {
+  return add(Geometry{std::move(mesh), material, {}, {}});
+}
+InstanceId SceneDesc::add(const Instance& instance) {
+  instances.push_back(instance);
+  return InstanceId(instances.size() - 1);
+}
+MaterialId SceneDesc::add(Material material) {
+  materials.push_back(std::move(material));
+  return MaterialId(materials.size() - 1);
+}
+TextureId SceneDesc::add(Texture texture) {
+  textures.push_back(std::move(texture));
+  return TextureId(textures.size() - 1);
+}
+
+std::size_t primitive_count(const Geometry& geometry) {
+  return std::visit(
+      [](const auto& shapes) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(shapes)>, TriangleMesh>)
+          return shapes.indices.size();
+        else
+          return shapes.size();
+      },
+      geometry.shapes);
+}
+
+std::size_t defined_primitive_count(const SceneDesc& desc) {
+  std::size_t count = 0;
+  for (const Geometry& geometry : desc.geometries) count += primitive_count(geometry);
+  return count;
+}
+
+std::size_t shown_primitive_count(const SceneDesc& desc) {
+  if (desc.instances.empty()) return defined_primitive_count(desc);
+  std::size_t count = 0;
+  for (const Instance& instance : desc.instances) count += primitive_count(desc.geometries[instance.geometry.value]);
+  return count;
+}
+
+std::vector<Instance> placed_instances(const SceneDesc& desc) {
+  if (!desc.instances.empty()) return desc.instances;
+  std::vector<Instance> placed(desc.geometries.size());
+  for (std::size_t i = 0; i < placed.size(); ++i) placed[i].geometry = GeometryId(i);
+  return placed;
+}
+
+void check(const SceneDesc& desc) {
+  const auto check_material = [&](MaterialId id, const std::string& name) {
+    if (id.is_valid() && id.value >= desc.materials.size())
+      fail(name + " has material " + std::to_string(id.value) + ", but there are " +
+           std::to_string(desc.materials.size()));
+  };
+
+  for (std::size_t g = 0; g < desc.geometries.size(); ++g) {
+    const Geometry& geometry = desc.geometries[g];
+    std::string name = "geometry " + std::to_string(g);
+    if (!geometry.name.empty()) name += " '" + geometry.name + "'";
+
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+      check_mesh(*mesh, name);
+    } else {
+      std::visit(
+          [&](const auto& shapes) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(shapes)>, TriangleMesh>)
+              check_shape_boxes(shapes, name);
+          },
+          geometry.shapes);
+    }
+    check_material(geometry.material, name);
+    if (!geometry.materials.empty() && geometry.materials.size() != primitive_count(geometry))
+      fail(name + " has " + std::to_string(geometry.materials.size()) + " materials, expected none or one for each of the " +
+           std::to_string(primitive_count(geometry)) + " primitives");
+    for (const MaterialId id : geometry.materials) check_material(id, name);
+  }
+
+  for (std::size_t i = 0; i < desc.instances.size(); ++i) {
+    const Instance& instance = desc.instances[i];
+    const std::string name = "instance " + std::to_string(i);
+    if (instance.geometry.value >= desc.geometries.size())
+      fail(name + " places geometry " + std::to_string(instance.geometry.value) + ", but there are " +
+           std::to_string(desc.geometries.size()));
+    check_material(instance.material, name);
+    try {
+      (void)inverse(instance.world_from_object);
+    } catch (const std::invalid_argument& error) {
+      fail(name + ": " + error.what());
+    }
+  }
+
+  for (const Material& material : desc.materials)
+    if (material.color_texture.is_valid() && material.color_texture.value >= desc.textures.size())
+      fail("material '" + material.name + "' has texture " + std::to_string(material.color_texture.value) +
+           ", but there are " + std::to_string(desc.textures.size()));
+}
+
+}  // namespace boxwood

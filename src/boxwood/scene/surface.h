@@ -1,0 +1,25 @@
+// surface.h: what is it like where a ray hit, and where may the next ray start?
+#pragma once
+
+#include "boxwood/scene/scene.h"
+
+namespace boxwood {
+
+/// The place of a hit, in world space.
+struct Surface {
+  Vec3 position;
+  Vec3 error;           ///< |position - true position| is at most this, component by component.
+  Vec3 normal;          ///< Geometric; unit length; as in Hit (not turned towards the ray).
+  Vec3 shading_normal;  ///< Interpolated where the mesh has normals, on the same side as `normal`; else `normal`.
+  Vec2 uv;              ///< Interpolated where the mesh has them; else the hit's u, v.
+  MaterialId material;  ///< None: the default material.
+
+  /// A ray from here along `direction` that cannot hit the primitive it leaves, at any scale: the origin is moved along
+  /// the normal, to the side of `direction`, past the error bound and the leaf test's own rounding.
+  Ray spawn(Vec3 direction, float t_max = kInfinity) const;
+};
+
+/// Works out the place of `hit`, which `scene` returned for `ray`. Precondition: hit.is_hit().
+Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
+
+}  // namespace boxwood
