@@ -1,0 +1,50 @@
+# Thin verbs over CMake, ctest and tools/. `make help` lists them.
+#
+# `make demo` and `make test` need nothing but a Debian 12 machine: set-up installs what is missing first.
+
+PROGRAM := build/release/boxwood
+
+.PHONY: help setup build demo test check bench format docs clean
+.DEFAULT_GOAL := help
+
+help:    ## This list.
+	@sed -n 's/^\([a-z]*\): .*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
+
+setup:   ## Install the Debian packages that are missing; nothing when none are.
+	@tools/setup.sh
+
+build: setup  ## Build the program: build/release/boxwood.
+	cmake --preset release
+	cmake --build --preset release --target boxwood_program
+
+demo: build  ## Render the default scene to out/demo.png.
+	@mkdir -p out
+	$(PROGRAM) render stilllife -o out/demo.png
+
+test: setup  ## Build everything and run every test.
+	cmake --preset release
+	cmake --build --preset release
+	tools/run_tests.py build/release
+
+check: setup  ## What a change must pass before it is shared: format, warnings as errors, the sanitizers.
+	@tools/setup.sh clang-format
+	tools/format.sh --check
+	cmake --preset dev && cmake --build --preset dev && tools/run_tests.py build/dev
+	cmake --preset asan && cmake --build --preset asan && tools/run_tests.py build/asan
+	cmake --preset tsan && cmake --build --preset tsan && tools/run_tests.py build/tsan
+
+bench: setup  ## Measure queries and builders, beside Embree where it is installed.
+	cmake --preset release
+	cmake --build --preset release --target boxwood_bench
+	build/release/bench/boxwood_bench
+
+format:  ## Lay out every source file as .clang-format says.
+	@tools/setup.sh clang-format
+	tools/format.sh
+
+docs: build  ## Draw the pictures and charts of README.md and docs/ anew, then check every snippet and link.
+	tools/draw_docs.sh
+	tools/check_docs.py
+
+clean:   ## Remove what was built.
+	rm -rf build out

@@ -1,0 +1,21 @@
+# FindOpenImageIO.cmake: where is OpenImageIO?
+#
+# Debian's own OpenImageIOConfig.cmake insists on every command line tool (openimageio-tools, with Qt) and on OpenCV's headers
+# being there. We need the library and its headers, so we look for just these. Defines OpenImageIO::OpenImageIO.
+find_package(Imath 3 QUIET)
+find_path(OpenImageIO_INCLUDE_DIR OpenImageIO/imageio.h)
+find_library(OpenImageIO_LIBRARY OpenImageIO)
+find_library(OpenImageIO_UTIL_LIBRARY OpenImageIO_Util)
+mark_as_advanced(OpenImageIO_INCLUDE_DIR OpenImageIO_LIBRARY OpenImageIO_UTIL_LIBRARY)
+
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(OpenImageIO
+  REQUIRED_VARS OpenImageIO_LIBRARY OpenImageIO_UTIL_LIBRARY OpenImageIO_INCLUDE_DIR Imath_FOUND)
+
+if(OpenImageIO_FOUND AND NOT TARGET OpenImageIO::OpenImageIO)
+  add_library(OpenImageIO::OpenImageIO UNKNOWN IMPORTED)
+  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
+    IMPORTED_LOCATION "${OpenImageIO_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${OpenImageIO_INCLUDE_DIR}"
+    INTERFACE_LINK_LIBRARIES "${OpenImageIO_UTIL_LIBRARY};Imath::Imath")
+endif()
