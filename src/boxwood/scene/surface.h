@@ -8,7 +8,7 @@ namespace boxwood {
 /// The place of a hit, in world space.
 struct Surface {
   Vec3 position;
-  Vec3 error;           ///< |position - true position| is at most this, component by component.
+  Vec3 error;           ///< The surface passes within this of `position`, component by component.
   Vec3 normal;          ///< Geometric; unit length; as in Hit (not turned towards the ray).
   Vec3 shading_normal;  ///< Interpolated where the mesh has normals, on the same side as `normal`; else `normal`.
   Vec2 uv;              ///< Interpolated where the mesh has them; else the hit's u, v.

@@ -1,0 +1,109 @@
+// closest_point.cpp: which point of a scene is nearest?
+//
+// The walk of traverse.h with a distance in place of a t. Boxes of placed objects are taken into the world one by one, and
+// the distance to a primitive is never reported below that of its own box: the law of gate.h, for distances.
+#include <stdexcept>
+
+#include "boxwood/scene/parts.h"
+
+namespace boxwood {
+namespace {
+
+struct Best {
+  float limit;  // squared
+  bool found = false;
+  Vec3 position;
+  InstanceId instance_id;
+  PrimId primitive_id;
+
+  void consider(float d2, Vec3 p, InstanceId instance, PrimId primitive) {
+    if (!(d2 <= limit)) return;
+    if (found && d2 == limit && (instance != instance_id ? instance > instance_id : primitive >= primitive_id)) return;
+    limit = d2;
+    found = true;
+    position = p;
+    instance_id = instance;
+    primitive_id = primitive;
+  }
+};
+
+/// How one space sees the point: the world itself, or an object under a placement (null: the world).
+struct View {
+  Vec3 point;
+  const Placement* placement;
+
+  Box3 to_world(const Box3& box) const { return placement ? transform_box(placement->world_from_object, box) : box; }
+  Vec3 to_world(Vec3 p) const { return placement ? placement->world_from_object.point(p) : p; }
+  Triangle to_world(const Triangle& t) const { return {to_world(t.a), to_world(t.b), to_world(t.c)}; }
+
+  Vec3 nearest(const Triangle& triangle) const { return to_world(triangle).closest_point(point); }
+  Vec3 nearest(const Quad& quad) const {
+    return Quad{to_world(quad.a), to_world(quad.b), to_world(quad.c), to_world(quad.d)}.closest_point(point);
+  }
+  template <class S>
+  Vec3 nearest(const S& shape) const {  // under a similarity the nearest point is the same in both spaces
+    return placement ? to_world(shape.closest_point(placement->object_from_world.point(point)))
+                     : shape.closest_point(point);
+  }
+};
+
+template <class Item>
+struct PointQuery {
+  const SceneDesc& desc;
+  const std::vector<Item>& items;
+  const View& view;
+  Best& best;
+
+  float bound(const Box3& box) const { return distance_squared(view.to_world(box), view.point); }
+  float limit() const { return best.limit; }
+  void visit(PrimId id) {
+    const Item& item = items[id.value];
+    const auto meet = [&](const auto& shape) {
+      if (shape.box().is_empty()) return;
+      const Vec3 p = view.nearest(shape);
+      const float d2 = max(length_squared(p - view.point), bound(shape.box()));
+      best.consider(d2, p, view.placement ? view.placement->instance_id : item.instance_id, item.primitive_id);
+    };
+    if constexpr (std::is_same_v<Item, LeafTriangle>)
+      meet(Triangle{item.a, item.b, item.c});
+    else
+      with_shape(desc.geometries[item.geometry_id.value], item.primitive_id, meet);
+  }
+};
+
+void search(const Scene::Parts& parts, const Part& part, const View& view, Best& best) {
+  PointQuery<LeafTriangle> triangles{parts.desc, part.triangles, view, best};
+  traverse(part.triangle_bvh, triangles);
+  PointQuery<LeafShape> shapes{parts.desc, part.shapes, view, best};
+  traverse(part.shape_bvh, shapes);
+}
+
+struct PlacementPointQuery {
+  const Scene::Parts& parts;
+  Vec3 point;
+  Best& best;
+  float bound(const Box3& box) const { return distance_squared(box, point); }
+  float limit() const { return best.limit; }
+  void visit(PrimId id) {
+    const Placement& placement = parts.placements[id.value];
+    search(parts, parts.objects[placement.part_index], View{point, &placement}, best);
+  }
+};
+
+}  // namespace
+
+ScenePoint Scene::closest_point(Vec3 point, float max_distance) const {
+  if (!parts_->closest_point_obstacle.empty())
+    throw std::invalid_argument("closest_point: the scene cannot answer, " + parts_->closest_point_obstacle);
+  if (!is_finite(point) || !(max_distance >= 0)) return {};
+
+  Best best{max_distance * max_distance, false, {}, {}, {}};
+  search(*parts_, parts_->world, View{point, nullptr}, best);
+  PlacementPointQuery placements{*parts_, point, best};
+  traverse(parts_->top_level, placements);
+  if (!best.found) return {};
+  return {std::sqrt(best.limit), best.position, best.instance_id,
+          parts_->instances[best.instance_id.value].geometry, best.primitive_id};
+}
+
+}  // namespace boxwood

@@ -1,0 +1,130 @@
+#include "boxwood/scene/parts.h"
+
+#include <chrono>
+#include <stdexcept>
+
+#include "boxwood/build/build.h"
+
+namespace boxwood {
+namespace {
+
+constexpr std::size_t kGrain = 1 << 14;
+
+/// Adds the primitives of one geometry, as one instance shows them, to a part.
+void add_geometry(Part& part, const SceneDesc& desc, GeometryId geometry_id, InstanceId instance_id, Executor& executor) {
+  const Geometry& geometry = desc.geometries[geometry_id.value];
+  const std::size_t count = primitive_count(geometry);
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+    const std::size_t first = part.triangles.size();
+    part.triangles.resize(first + count);
+    parallel_for(executor, 0, count, kGrain, [&](std::size_t i) {
+      const Triangle triangle = triangle_of(*mesh, PrimId(i));
+      part.triangles[first + i] = {triangle.a, triangle.b, triangle.c, instance_id, PrimId(i)};
+    });
+  } else {
+    for (std::size_t i = 0; i < count; ++i) part.shapes.push_back({geometry_id, instance_id, PrimId(i)});
+  }
+}
+
+/// Builds a tree over `items`, puts them into leaf order and makes prim_ids count along.
+template <class Item, class BoxOf>
+Bvh build_in_leaf_order(std::vector<Item>& items, const BoxOf& box_of, const BuildOptions& options, Executor& executor) {
+  std::vector<Box3> boxes(items.size());
+  parallel_for(executor, 0, items.size(), kGrain, [&](std::size_t i) { boxes[i] = box_of(items[i]); });
+  Bvh bvh = build(boxes, options);
+
+  std::vector<Item> ordered(items.size());
+  parallel_for(executor, 0, items.size(), kGrain, [&](std::size_t i) {
+    ordered[i] = items[bvh.prim_ids[i].value];
+    bvh.prim_ids[i] = PrimId(i);
+  });
+  items = std::move(ordered);
+  return bvh;
+}
+
+void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options, Executor& executor) {
+  part.triangle_bvh = build_in_leaf_order(
+      part.triangles, [](const LeafTriangle& t) { return Triangle{t.a, t.b, t.c}.box(); }, options, executor);
+  part.shape_bvh = build_in_leaf_order(
+      part.shapes,
+      [&](const LeafShape& s) {
+        return with_shape(desc.geometries[s.geometry_id.value], s.primitive_id,
+                          [](const auto& shape) { return shape.box(); });
+      },
+      options, executor);
+  part.bounds = unite(part.triangle_bvh.bounds(), part.shape_bvh.bounds());
+}
+
+/// Whether the linear part keeps angles, up to rounding.
+bool is_similarity(const Affine3& m) {
+  const float x = length_squared(m.x), y = length_squared(m.y), z = length_squared(m.z);
+  const float tolerance = 1e-5f * max(x, max(y, z));
+  return std::fabs(x - y) <= tolerance && std::fabs(y - z) <= tolerance && std::fabs(dot(m.x, m.y)) <= tolerance &&
+         std::fabs(dot(m.y, m.z)) <= tolerance && std::fabs(dot(m.z, m.x)) <= tolerance;
+}
+
+/// Why the nearest point of `geometry` under a transform is not known; empty when it is.
+std::string closest_point_obstacle(const Geometry& geometry, bool under_similarity) {
+  if (std::holds_alternative<TriangleMesh>(geometry.shapes) || std::holds_alternative<std::vector<Quad>>(geometry.shapes))
+    return "";
+  if (!under_similarity) return "it has shapes under a transform that is not a similarity";
+  if (const auto* shapes = std::get_if<std::vector<AnyShape>>(&geometry.shapes))
+    for (const AnyShape& shape : *shapes)
+      if (!shape.get().has_closest_point()) return "it has a shape that knows no closest point";
+  return "";
+}
+
+}  // namespace
+
+std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Executor& executor = options.executor ? *options.executor : default_executor();
+  check(desc);
+
+  auto parts = std::make_unique<Scene::Parts>();
+  parts->desc = std::move(desc);
+  parts->instances = placed_instances(parts->desc);
+
+  // Sort what is placed: into the world, or into an object of its own.
+  constexpr std::uint32_t kNoPart = 0xffffffffu;
+  std::vector<std::uint32_t> part_of_geometry(parts->desc.geometries.size(), kNoPart);
+  parts->object_from_world.resize(parts->instances.size());
+  for (std::size_t i = 0; i < parts->instances.size(); ++i) {
+    const Instance& instance = parts->instances[i];
+    const Geometry& geometry = parts->desc.geometries[instance.geometry.value];
+    bool under_similarity = true;
+    if (instance.world_from_object == Affine3::identity()) {
+      add_geometry(parts->world, parts->desc, instance.geometry, InstanceId(i), executor);
+    } else {
+      std::uint32_t& part_index = part_of_geometry[instance.geometry.value];
+      if (part_index == kNoPart) {
+        part_index = static_cast<std::uint32_t>(parts->objects.size());
+        add_geometry(parts->objects.emplace_back(), parts->desc, instance.geometry, InstanceId(), executor);
+      }
+      parts->object_from_world[i] = inverse(instance.world_from_object);
+      under_similarity = is_similarity(instance.world_from_object);
+      parts->placements.push_back({InstanceId(i), part_index, instance.world_from_object, parts->object_from_world[i],
+                                   Box3{}, under_similarity});
+    }
+    if (parts->closest_point_obstacle.empty())
+      parts->closest_point_obstacle = closest_point_obstacle(geometry, under_similarity);
+  }
+
+  // Build from the inside out: objects, world, placements.
+  for (Part& object : parts->objects) build_trees(object, parts->desc, options, executor);
+  build_trees(parts->world, parts->desc, options, executor);
+  for (Placement& placement : parts->placements)
+    placement.world_box = transform_box(placement.world_from_object, parts->objects[placement.part_index].bounds);
+  for (const Placement& placement : parts->placements)
+    if (!placement.world_box.is_empty() && !(is_finite(placement.world_box.lower) && is_finite(placement.world_box.upper)))
+      throw std::invalid_argument("scene: instance " + std::to_string(placement.instance_id.value) +
+                                  " reaches beyond what a float can hold");
+  parts->top_level = build_in_leaf_order(
+      parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
+  parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
+
+  parts->build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return parts;
+}
+
+}  // namespace boxwood

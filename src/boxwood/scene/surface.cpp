@@ -1,0 +1,170 @@
+// Error bounds follow Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8: a position made of
+// rounded operations comes with a bound of what rounding did, and the next ray starts beyond it. To that we add what the
+// leaf test itself may get wrong when it meets the same primitive again from so near, and what a transform
+// rounds away on the way to object space and back.
+#include "boxwood/scene/surface.h"
+
+#include "boxwood/scene/parts.h"
+
+namespace boxwood {
+namespace {
+
+constexpr float u = 0x1p-24f;  // half a unit in the last place of 1
+
+/// What the geometry says in its own space.
+struct LocalSurface {
+  Vec3 position;
+  Vec3 error;
+  Vec3 normal;
+  Vec3 shading_normal;
+  Vec2 uv;
+};
+
+/// How far from the plane of (a, b, c), near `p`, the watertight test could still report a crossing: its vertices are moved
+/// by up to 6u of their distance, and its plane is tilted by the rounding of the cross product, which matters for slivers.
+float leaf_test_error(const Triangle& t, Vec3 p) {
+  const float reach = std::sqrt(max(length_squared(t.a - p), max(length_squared(t.b - p), length_squared(t.c - p))));
+  const Vec3 e1 = t.b - t.a, e2 = t.c - t.a;
+  const float area = length(cross(e1, e2)), product = std::sqrt(length_squared(e1)) * std::sqrt(length_squared(e2));
+  const float sliver = area > 0 ? min(product / area, 0x1p12f) : 1.0f;
+  return reach * (16 * u + 8 * u * sliver);
+}
+
+LocalSurface on_triangle(const Triangle& t, float v_weight, float w_weight) {
+  const float a_weight = 1 - v_weight - w_weight;
+  LocalSurface s;
+  s.position = t.a * a_weight + t.b * v_weight + t.c * w_weight;
+  s.error = (abs(t.a * a_weight) + abs(t.b * v_weight) + abs(t.c * w_weight)) * (8 * u) +
+            splat(leaf_test_error(t, s.position));
+  s.normal = s.shading_normal = t.normal();
+  s.uv = {v_weight, w_weight};
+  return s;
+}
+
+Vec3 blend(Vec3 a, Vec3 b, Vec3 c, float v, float w) { return a * (1 - v - w) + b * v + c * w; }
+
+LocalSurface on_mesh(const TriangleMesh& mesh, const Hit& hit) {
+  LocalSurface s = on_triangle(triangle_of(mesh, hit.primitive_id), hit.u, hit.v);
+  const auto& [i, j, k] = mesh.indices[hit.primitive_id.value];
+  if (!mesh.uvs.empty()) {
+    const Vec2 a = mesh.uvs[i], b = mesh.uvs[j], c = mesh.uvs[k];
+    const Vec3 uv = blend({a.x, a.y, 0}, {b.x, b.y, 0}, {c.x, c.y, 0}, hit.u, hit.v);
+    s.uv = {uv.x, uv.y};
+  }
+  if (!mesh.normals.empty()) {
+    const Vec3 n = blend(mesh.normals[i], mesh.normals[j], mesh.normals[k], hit.u, hit.v);
+    if (length_squared(n) > 0 && is_finite(n)) s.shading_normal = normalize(n);
+  }
+  return s;
+}
+
+LocalSurface on_shape(const Quad& quad, const PreparedRay&, const Crossing& c) {
+  // Back from the quad's (u, v) to the weights of the half that was hit (see shape/quad.h).
+  LocalSurface s = c.part == 0 ? on_triangle(quad.half(0), c.u - c.v, c.v) : on_triangle(quad.half(1), c.u, c.v - c.u);
+  s.uv = {c.u, c.v};
+  return s;
+}
+
+LocalSurface on_shape(const Sphere& sphere, const PreparedRay& ray, const Crossing& c) {
+  LocalSurface s;
+  s.normal = s.shading_normal = sphere.normal(ray, c);
+  s.position = sphere.center + s.normal * sphere.radius;  // drawn onto the sphere, whatever the error of t
+  s.error = abs(sphere.center) * (4 * u) + splat(sphere.radius * 8 * u);
+  s.uv = {0.5f + std::atan2(s.normal.z, s.normal.x) * 0.15915494f,
+          0.5f + std::asin(min(max(s.normal.y, -1.0f), 1.0f)) * 0.31830989f};
+  return s;
+}
+
+LocalSurface on_shape(const Cuboid& cuboid, const PreparedRay& ray, const Crossing& c) {
+  LocalSurface s;
+  s.normal = s.shading_normal = cuboid.normal(ray, c);
+  const int axis = static_cast<int>(c.part / 2);
+  s.position = min(max(ray.origin + ray.direction * c.t, cuboid.lower), cuboid.upper);
+  s.position[axis] = c.part % 2 ? cuboid.upper[axis] : cuboid.lower[axis];
+  s.error = abs(s.position) * (4 * u);
+  const int across = (axis + 1) % 3, along = (axis + 2) % 3;
+  const Vec3 size = cuboid.upper - cuboid.lower, from = s.position - cuboid.lower;
+  s.uv = {size[across] > 0 ? from[across] / size[across] : 0, size[along] > 0 ? from[along] / size[along] : 0};
+  return s;
+}
+
+LocalSurface on_shape(const Disk& disk, const PreparedRay& ray, const Crossing& c) {
+  LocalSurface s;
+  s.normal = s.shading_normal = disk.normal(ray, c);
+  const Vec3 p = ray.origin + ray.direction * c.t;
+  s.position = p - s.normal * dot(s.normal, p - disk.center);  // drawn onto the plane
+  s.error = (abs(s.position) + abs(disk.center) + splat(disk.radius)) * (8 * u);
+  Vec3 x, y;
+  orthonormal_basis(s.normal, x, y);
+  const Vec3 from = (s.position - disk.center) / disk.radius;
+  s.uv = {0.5f + 0.5f * dot(from, x), 0.5f + 0.5f * dot(from, y)};
+  return s;
+}
+
+LocalSurface on_shape(const AnyShape& shape, const PreparedRay& ray, const Crossing& c) {
+  LocalSurface s;
+  s.normal = s.shading_normal = shape.normal(ray, c);
+  s.position = ray.origin + ray.direction * c.t;
+  s.error = (abs(ray.origin) + abs(ray.direction * c.t)) * (32 * u);  // nothing is known of how it was worked out
+  s.uv = {c.u, c.v};
+  return s;
+}
+
+/// |m| * v: what a transform makes of an error bound.
+Vec3 spread(const Affine3& m, Vec3 v) { return abs(m.x) * v.x + abs(m.y) * v.y + abs(m.z) * v.z; }
+
+}  // namespace
+
+Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
+  const Scene::Parts& parts = scene.parts();
+  const Geometry& geometry = parts.desc.geometries[hit.geometry_id.value];
+  const Instance& instance = parts.instances[hit.instance_id.value];
+  const Affine3& world_from_object = instance.world_from_object;
+  const Affine3& object_from_world = parts.object_from_world[hit.instance_id.value];
+  const bool is_moved = !(world_from_object == Affine3::identity());
+
+  // Ask the geometry, in its own space.
+  const auto local = [&]() -> LocalSurface {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) return on_mesh(*mesh, hit);
+    const PreparedRay prepared = is_moved ? PreparedRay(object_from_world.point(ray.origin),
+                                                        object_from_world.vector(ray.direction), -kInfinity, kInfinity, {})
+                                          : PreparedRay(ray, {});
+    const Crossing crossing{hit.t, hit.u, hit.v, hit.part};
+    return with_shape(geometry, hit.primitive_id,
+                      [&](const auto& shape) { return on_shape(shape, prepared, crossing); });
+  }();
+
+  Surface s;
+  s.position = local.position;
+  s.error = local.error;
+  s.normal = hit.normal;
+  s.shading_normal = local.shading_normal;
+  s.uv = local.uv;
+  s.material = instance.material.is_valid()     ? instance.material
+               : geometry.materials.empty()     ? geometry.material
+                                                : geometry.materials[hit.primitive_id.value];
+
+  // Take it to the world, with what the transform rounds away there and when the next ray comes back.
+  if (is_moved) {
+    const Vec3 back = spread(object_from_world, abs(world_from_object.point(local.position))) + abs(object_from_world.origin);
+    const Vec3 object_error = local.error + back * (8 * u);
+    s.position = world_from_object.point(local.position);
+    s.error = spread(world_from_object, object_error) +
+              (spread(world_from_object, abs(local.position)) + abs(world_from_object.origin)) * (8 * u);
+    s.shading_normal = normalize(transform_normal(object_from_world, local.shading_normal));
+  }
+
+  // Keep the shading normal on the geometric side.
+  if (dot(s.shading_normal, s.normal) < 0) s.shading_normal = -s.shading_normal;
+  if (!is_finite(s.shading_normal)) s.shading_normal = s.normal;
+  return s;
+}
+
+Ray Surface::spawn(Vec3 direction, float t_max) const {
+  // Far enough along the normal to leave the error box; twice, for the rounding of the new origin itself.
+  const float distance = 2 * (dot(abs(normal), error) + 2 * u * max_component(abs(position)));
+  const Vec3 side = dot(normal, direction) < 0 ? -normal : normal;
+  return {position + side * distance, 0, direction, t_max};
+}
+
+}  // namespace boxwood
