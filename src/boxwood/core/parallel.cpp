@@ -1,10 +1,13 @@
 #include "boxwood/core/parallel.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
@@ -32,6 +35,9 @@ class TbbExecutor final : public Executor {
  public:
   /// 0 threads means all that the machine offers.
   explicit TbbExecutor(int threads) {
+    // oneTBB keeps to the number of cores, and prints a warning, unless more threads are allowed first.
+    if (threads > tbb::info::default_concurrency())
+      allowance_.emplace(tbb::global_control::max_allowed_parallelism, threads);
     if (threads > 0)
       arena_.initialize(threads);
     else
@@ -51,6 +57,7 @@ class TbbExecutor final : public Executor {
   }
 
  private:
+  std::optional<tbb::global_control> allowance_;
   mutable tbb::task_arena arena_;
 };
 
