@@ -1,0 +1,47 @@
+// boxwood.h: everything of the core library; the order of the includes is the floor plan.
+//
+// Read it from top to bottom: each room stands on those before it. The wings have doors of their own:
+// boxwood/io/load.h and boxwood/io/image.h (files), boxwood/render/render.h (pictures).
+#pragma once
+
+// clang-format off: the order carries meaning
+
+// Floor 0. core: vectors, boxes, rays, hits, threads, errors.
+#include "boxwood/core/vec.h"
+#include "boxwood/core/box.h"
+#include "boxwood/core/affine.h"
+#include "boxwood/core/ray.h"
+#include "boxwood/core/id.h"
+#include "boxwood/core/hit.h"
+#include "boxwood/core/prepared_ray.h"
+#include "boxwood/core/random.h"
+#include "boxwood/core/error.h"
+#include "boxwood/core/progress.h"
+#include "boxwood/core/parallel.h"
+
+// Floor 1. shape: what is hit.
+#include "boxwood/shape/concept.h"
+#include "boxwood/shape/gate.h"
+#include "boxwood/shape/triangle.h"
+#include "boxwood/shape/sphere.h"
+#include "boxwood/shape/quad.h"
+#include "boxwood/shape/cuboid.h"
+#include "boxwood/shape/disk.h"
+#include "boxwood/shape/instance.h"
+#include "boxwood/shape/shape.h"
+
+// Floor 1. tree: what organises it.
+#include "boxwood/tree/bvh.h"
+
+// Floor 2. build: make a tree.
+#include "boxwood/build/options.h"
+#include "boxwood/build/build.h"
+
+// Floor 2. query: ask it.
+#include "boxwood/query/traverse.h"
+#include "boxwood/query/closest_hit.h"
+
+// Floor 3. scene: the hall.
+#include "boxwood/scene/description.h"
+#include "boxwood/scene/scene.h"
+#include "boxwood/scene/surface.h"
