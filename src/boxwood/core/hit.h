@@ -26,11 +26,13 @@ struct ShapeHit : Crossing {
   friend bool operator==(const ShapeHit&, const ShapeHit&) = default;
 };
 
-/// The order of the contract: smaller t first, equal t by id, then by part. A total order, so "the closest" is unique.
+/// The order of the contract: smaller t first, equal t by id, then by what is left (shapes in nested groups may share
+/// the part). A total order, so "the closest" is unique.
 inline bool comes_before(const ShapeHit& a, const ShapeHit& b) {
   if (a.t != b.t) return a.t < b.t;
   if (a.prim_id != b.prim_id) return a.prim_id < b.prim_id;
-  return a.part < b.part;
+  if (a.part != b.part) return a.part < b.part;
+  return a.u != b.u ? a.u < b.u : a.v < b.v;
 }
 
 /// What a ray hits in a scene. A miss has t = +inf, no ids, and a zero normal.
@@ -48,13 +50,14 @@ struct Hit {
   friend bool operator==(const Hit&, const Hit&) = default;
 };
 
-/// The order of the contract: smaller t first, equal t by (instance, geometry, primitive), then by part.
+/// The order of the contract: smaller t first, equal t by (instance, geometry, primitive), then by what is left.
 inline bool comes_before(const Hit& a, const Hit& b) {
   if (a.t != b.t) return a.t < b.t;
   if (a.instance_id != b.instance_id) return a.instance_id < b.instance_id;
   if (a.geometry_id != b.geometry_id) return a.geometry_id < b.geometry_id;
   if (a.primitive_id != b.primitive_id) return a.primitive_id < b.primitive_id;
-  return a.part < b.part;
+  if (a.part != b.part) return a.part < b.part;
+  return a.u != b.u ? a.u < b.u : a.v < b.v;
 }
 
 }  // namespace boxwood

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "boxwood/shape/gate.h"
 #include "boxwood/query/traverse.h"
+#include "boxwood/shape/gate.h"
 
 namespace boxwood {
 

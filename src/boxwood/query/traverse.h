@@ -1,7 +1,8 @@
 // traverse.h: how does any question walk a tree?
 //
-// One loop for all of them. A query offers a lower bound for a box, a limit that only shrinks, and a visit; the loop
-// goes to the nearer child first, keeps the farther one for later, and skips whatever lies beyond the limit.
+// One loop for all of them. A query offers a lower bound for a box, a limit that only shrinks, and a visit;
+// the loop goes to the nearer child first, keeps the farther one for later, and skips whatever lies beyond
+// the limit.
 #pragma once
 
 #include <concepts>
@@ -11,13 +12,13 @@
 
 namespace boxwood {
 
-/// Laws: the bound of a box is at most the bound of any box inside it; bound <= limit is "may matter", so a tie is
-/// still visited; limit() never grows during one walk.
+/// Laws: the bound of a box is at most the bound of any box inside it; bound <= limit is "may matter", so a
+/// tie is still visited; limit() never grows during one walk.
 template <class Q>
 concept Query = requires(Q query, const Box3& box, PrimId id) {
   { query.bound(box) } -> std::same_as<float>;  // nothing inside the box is better than this; +inf: skip it
   { query.limit() } -> std::same_as<float>;     // anything above this no longer matters
-  { query.visit(id) };                          // look at one primitive
+  {query.visit(id)};                            // look at one primitive
 };
 
 /// Counts what a walk did; pass it to traverse to have it filled (see also NoStatistics).
@@ -33,7 +34,8 @@ struct NoStatistics {
   void count_shapes(std::uint32_t) {}
 };
 
-/// Shows every primitive that may matter to `query`. Allocates nothing; any number of threads may walk one tree.
+/// Shows every primitive that may matter to `query`. Allocates nothing; any number of threads may walk one
+/// tree.
 template <Query Q, class Statistics>
 void traverse(const Bvh& bvh, Q& query, Statistics& statistics) {
   if (bvh.is_empty()) return;
