@@ -40,6 +40,12 @@
 // Floor 2. query: ask it.
 #include "boxwood/query/traverse.h"
 #include "boxwood/query/closest_hit.h"
+#include "boxwood/query/any_hit.h"
+#include "boxwood/query/all_hits.h"
+#include "boxwood/query/closest_point.h"
+#include "boxwood/query/nearest.h"
+#include "boxwood/query/overlap.h"
+#include "boxwood/query/group.h"
 
 // Floor 3. scene: the hall.
 #include "boxwood/scene/description.h"

@@ -42,6 +42,9 @@ class AnyShape {
   AnyShape(std::shared_ptr<const Shape> shape) : shape_(std::move(shape)) {
     if (!shape_) throw std::invalid_argument("AnyShape: the shape is null");
   }
+  /// So that std::make_shared<MyShape>() stands in a list beside values.
+  template <std::derived_from<Shape> S>
+  AnyShape(std::shared_ptr<S> shape) : AnyShape(std::shared_ptr<const Shape>(std::move(shape))) {}
   /// Wraps a copy of any type that meets the concept.
   template <class S>
     requires(ShapeType<S> && !std::same_as<S, AnyShape>)
