@@ -151,9 +151,10 @@ TEST_P(EachMethod, EmptyBoxesStandApart) {
   EXPECT_TRUE(bvh.nodes[2].box.is_empty());
   // No box that a ray can enter leads to an empty one, but the root.
   for (const BvhNode& node : bvh.nodes)
-    if (node.is_leaf())
-      for (std::uint32_t i = 0; i < node.count; ++i)
-        EXPECT_EQ(boxes[bvh.prim_ids[node.first_index + i].value].is_empty(), node.box.is_empty());
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const Box3& box = boxes[bvh.prim_ids[node.first_index + i].value];
+      EXPECT_EQ(box.is_empty(), node.box.is_empty());
+    }
 }
 
 TEST_P(EachMethod, RefusesWhatIsOutOfRange) {
