@@ -52,15 +52,24 @@ class PreparedRay {
 
   bool is_valid() const { return t_max > -kInfinity && t_max >= t_min; }
 
-  /// The interval of the whole line (t from -inf to +inf) inside `box`, widened as the file's head says.
+  /// The interval between two planes across `axis`, lower <= upper, widened as the file's head says. Both planes lie
+  /// within the bounds that the ray was prepared for.
+  Interval slab(int axis, float lower, float upper) const {
+    const float near_plane = backward_[axis] ? upper : lower;
+    const float far_plane = backward_[axis] ? lower : upper;
+    return {near_plane * inverse_[axis] + near_shift_[axis], far_plane * inverse_[axis] + far_shift_[axis]};
+  }
+  /// Whether the ray meets the planes across `axis` from the upper to the lower.
+  bool is_backward(int axis) const { return backward_[axis]; }
+
+  /// The interval of the whole line (t from -inf to +inf) inside `box`: what its three slabs share.
   Interval interval(const Box3& box) const {
     // A select, not std::max: a NaN, from an infinite plane times 0, never replaces a number.
     float entry = -kInfinity, exit = kInfinity;
     for (int k = 0; k < 3; ++k) {
-      const float near_plane = backward_[k] ? box.upper[k] : box.lower[k];
-      const float far_plane = backward_[k] ? box.lower[k] : box.upper[k];
-      entry = max(near_plane * inverse_[k] + near_shift_[k], entry);
-      exit = min(far_plane * inverse_[k] + far_shift_[k], exit);
+      const Interval across = slab(k, box.lower[k], box.upper[k]);
+      entry = max(across.entry, entry);
+      exit = min(across.exit, exit);
     }
     return {entry, exit};
   }
