@@ -1,49 +1,59 @@
 #include "boxwood/build/build.h"
 
-#include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "boxwood/build/binned_sah.h"
+#include "boxwood/build/longest_axis.h"
+#include "boxwood/build/sweep_sah.h"
+#include "boxwood/build/top_down.h"
+
 namespace boxwood {
-
-BuildOptions BuildOptions::fast() { return {}; }
-BuildOptions BuildOptions::balanced() { return {}; }
-BuildOptions BuildOptions::best() { return {}; }
-
 namespace {
 
-void split(Bvh& bvh, std::span<const Box3> boxes, std::uint32_t node_index, std::uint32_t begin, std::uint32_t end) {
-  Box3 box, centers;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    box.extend(boxes[bvh.prim_ids[i].value]);
-    centers.extend(boxes[bvh.prim_ids[i].value].center());
-  }
-  bvh.nodes[node_index] = {box, begin, end - begin};
-  if (end - begin <= 4) return;
-  const int axis = longest_axis(centers.extent());
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::sort(bvh.prim_ids.begin() + begin, bvh.prim_ids.begin() + end, [&](PrimId a, PrimId b) {
-    const float ca = boxes[a.value].center()[axis], cb = boxes[b.value].center()[axis];
-    return ca != cb ? ca < cb : a < b;
-  });
-  const auto left = static_cast<std::uint32_t>(bvh.nodes.size());
-  bvh.nodes[node_index] = {box, left, 0};
-  bvh.nodes.resize(left + 2);
-  split(bvh, boxes, left, begin, middle);
-  split(bvh, boxes, left + 1, middle, end);
+void require_range(const char* name, int value, int lowest, int highest) {
+  if (value < lowest || value > highest)
+    throw std::invalid_argument(std::string("build: ") + name + " is " + std::to_string(value) +
+                                ", expected " + std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+void check(const BuildOptions& options) {
+  require_range("max_depth", options.max_depth, 0, kMaxDepth);
+  require_range("leaf_size", options.leaf_size, 1, std::numeric_limits<int>::max());
+  require_range("bins", options.bins, 2, BinnedSahSplitter::kMaxBins);
+  if (!(options.traversal_cost >= 0 && std::isfinite(options.traversal_cost)))
+    throw std::invalid_argument("build: traversal_cost is " + std::to_string(options.traversal_cost) +
+                                ", expected a finite number that is not negative");
 }
 
 }  // namespace
 
-Bvh build(std::span<const Box3> boxes, const BuildOptions&) {
-  Bvh bvh;
-  if (boxes.empty()) return bvh;
-  bvh.prim_ids.resize(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) bvh.prim_ids[i] = PrimId(i);
-  bvh.nodes.resize(1);
-  split(bvh, boxes, 0, 0, static_cast<std::uint32_t>(boxes.size()));
-  return bvh;
+Bvh build(std::span<const Box3> boxes, const BuildOptions& options) {
+  check(options);
+  if (boxes.size() >= kMaxPrimitives)
+    throw std::invalid_argument("build: " + std::to_string(boxes.size()) + " boxes, expected fewer than " +
+                                std::to_string(kMaxPrimitives));
+  Executor& executor = options.executor != nullptr ? *options.executor : default_executor();
+  Meter meter(options.progress, boxes.size());
+  meter.advance(0);
+  Items items = collect_items(boxes, executor);
+
+  // Grow the tree: all methods share the driver and differ in how they split a node.
+  const auto grow = [&](auto splitter, bool may_halve) {
+    const auto full_count = static_cast<std::uint32_t>(boxes.size() - items.empty_boxes.size());
+    return TopDown(splitter, full_count, items.empty_boxes, options, may_halve, executor, meter).run();
+  };
+  switch (options.method) {
+    case Method::longest_axis:
+      return grow(LongestAxisSplitter(items.full, options), false);
+    case Method::binned_sah:
+      return grow(BinnedSahSplitter(items.full, options), true);
+    case Method::sweep_sah:
+      return grow(SweepSahSplitter(items.full, options, executor), true);
+  }
+  throw std::invalid_argument("build: method is " + std::to_string(static_cast<int>(options.method)) +
+                              ", expected longest_axis, binned_sah or sweep_sah");
 }
 
 }  // namespace boxwood

@@ -15,12 +15,14 @@ enum class Method {
 /// Data; the presets are the choices that were measured.
 struct BuildOptions {
   Method method = Method::binned_sah;
-  int max_depth = 64;            ///< No node deeper than this; 0 to kMaxDepth. A node there is a leaf of any size.
-  int leaf_size = 4;             ///< A node of this many primitives or fewer may become a leaf; at least 1.
-  int bins = 16;                 ///< binned_sah: bins on each axis; 2 to 64.
-  float traversal_cost = 1.0f;   ///< SAH: one box test costs this many shape tests.
-  Executor* executor = nullptr;  ///< Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
-  Progress progress;             ///< Told now and then; returning false throws Cancelled. May be empty.
+  int max_depth = 64;  ///< No node deeper than this; 0 to kMaxDepth. A node there is a leaf of any size.
+  int leaf_size = 4;   ///< At least 1. A node of more primitives is split, except at max_depth (longest_axis:
+                       ///< and where its rule finds no split); of as many or fewer, it may become a leaf.
+  int bins = 16;       ///< binned_sah: bins on each axis; 2 to 64.
+  float traversal_cost = 1.0f;  ///< SAH: a step over two boxes costs this many shape tests.
+  Executor* executor =
+      nullptr;        ///< Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
+  Progress progress;  ///< Told now and then; returning false throws Cancelled. May be empty.
 
   static BuildOptions fast();      ///< Shortest time to a usable tree.
   static BuildOptions balanced();  ///< The default.

@@ -25,8 +25,8 @@ std::span<const Entry> entries();
 /// Whether `name` (the part before a colon) is one of them.
 bool is_known(std::string_view name);
 
-/// Makes a scene, the same each time. Throws std::invalid_argument for a name that is not known, a size that is not a
-/// number, or one out of range; the message says what was expected.
+/// Makes a scene, the same each time. Throws std::invalid_argument for a name that is not known, a size that
+/// is not a number, or one out of range; the message says what was expected.
 SceneDesc make(std::string_view name);
 
 }  // namespace boxwood::gallery

@@ -1,0 +1,123 @@
+// item.h: what does a builder know about a primitive?
+//
+// Its box and its number, in 32 bytes that are cheap to grow by: a box is kept as (-lower, upper), so that a
+// union is one maximum a lane, four lanes at a time, and the compiler needs no help to use vectors for it.
+// Unions are exact and do not depend on the order of what they unite (a -0 becomes +0 at the door), which is
+// why no tree depends on how its work was spread over threads.
+#pragma once
+
+#include <bit>
+#include <span>
+#include <vector>
+
+#include "boxwood/core/box.h"
+#include "boxwood/core/id.h"
+#include "boxwood/core/parallel.h"
+
+namespace boxwood {
+
+/// Four floats that are worked on together; the fourth is never looked at.
+struct alignas(16) Lanes {
+  float v[4];
+};
+inline Lanes max(const Lanes& a, const Lanes& b) {
+  Lanes out;
+  for (int k = 0; k < 4; ++k) out.v[k] = a.v[k] > b.v[k] ? a.v[k] : b.v[k];
+  return out;
+}
+
+/// A box as (-lower, upper). Default: empty.
+struct Reach {
+  Lanes minus_lower{{-kInfinity, -kInfinity, -kInfinity, -kInfinity}};
+  Lanes upper{{-kInfinity, -kInfinity, -kInfinity, -kInfinity}};
+
+  void extend(const Reach& other) {
+    minus_lower = max(minus_lower, other.minus_lower);
+    upper = max(upper, other.upper);
+  }
+  void extend(const Lanes& point) {
+    Lanes minus;
+    for (int k = 0; k < 4; ++k) minus.v[k] = 0 - point.v[k];
+    minus_lower = max(minus_lower, minus);
+    upper = max(upper, point);
+  }
+  float lower(int axis) const { return 0 - minus_lower.v[axis]; }
+  Box3 box() const { return {{lower(0), lower(1), lower(2)}, {upper.v[0], upper.v[1], upper.v[2]}}; }
+  /// As half_area(box()), without the way there; 0 for an empty box.
+  double half_area() const {
+    if (upper.v[0] == -kInfinity) return 0;
+    const double x = double(upper.v[0]) + minus_lower.v[0], y = double(upper.v[1]) + minus_lower.v[1],
+                 z = double(upper.v[2]) + minus_lower.v[2];
+    return x * y + y * z + z * x;
+  }
+};
+
+/// A primitive with a box that is finite and not empty.
+struct Item {
+  float minus_lower[3];
+  PrimId prim_id;
+  float upper[3];
+  float unused = 0;
+
+  Item() = default;
+  Item(const Box3& box, PrimId id)
+      : minus_lower{0 - box.lower.x, 0 - box.lower.y, 0 - box.lower.z},
+        prim_id(id),
+        upper{box.upper.x + 0.0f, box.upper.y + 0.0f, box.upper.z + 0.0f} {}
+
+  Reach reach() const { return std::bit_cast<Reach>(*this); }
+  /// *Half* of the center. Builders only compare centers, and the difference of two halves is finite for all
+  /// boxes.
+  float half_center(int axis) const { return 0.25f * upper[axis] - 0.25f * minus_lower[axis]; }
+  Lanes half_center() const {
+    const Reach r = reach();
+    Lanes out;
+    for (int k = 0; k < 4; ++k) out.v[k] = 0.25f * r.upper.v[k] - 0.25f * r.minus_lower.v[k];
+    return out;
+  }
+};
+static_assert(sizeof(Item) == 32 && sizeof(Reach) == 32);
+
+/// The order along an axis: by center, equal centers by number. Total, so a sort has one result.
+struct ByCenter {
+  int axis;
+  bool operator()(const Item& a, const Item& b) const {
+    const float ca = a.half_center(axis), cb = b.half_center(axis);
+    return ca != cb ? ca < cb : a.prim_id < b.prim_id;
+  }
+};
+
+/// What there is to build over.
+struct Items {
+  std::vector<Item> full;           ///< Primitives with a box, in the order of their numbers.
+  std::vector<PrimId> empty_boxes;  ///< Primitives that no box test will ever find.
+};
+
+/// Throws std::invalid_argument, naming the first one, when a box is neither finite nor the empty box.
+Items collect_items(std::span<const Box3> boxes, Executor& executor);
+
+/// The union of `items`, and the union of their half centers.
+struct Extents {
+  Reach box, half_centers;
+  void extend(const Item& item) {
+    box.extend(item.reach());
+    half_centers.extend(item.half_center());
+  }
+  void extend(const Extents& other) {
+    box.extend(other.box);
+    half_centers.extend(other.half_centers);
+  }
+};
+inline Extents extents(std::span<const Item> items) {
+  Extents out;
+  for (const Item& item : items) out.extend(item);
+  return out;
+}
+
+/// The axis along which `reach` is longest; halves are compared, so that nothing overflows.
+inline int longest_axis(const Reach& reach) {
+  const auto half_extent = [&](int k) { return 0.5f * reach.upper.v[k] + 0.5f * reach.minus_lower.v[k]; };
+  return longest_axis(Vec3{half_extent(0), half_extent(1), half_extent(2)});
+}
+
+}  // namespace boxwood

@@ -1,0 +1,88 @@
+#include "boxwood/core/radix_sort.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace boxwood {
+namespace {
+
+constexpr int kDigitBits = 8;
+constexpr std::size_t kDigits = 1 << kDigitBits;
+constexpr std::size_t kBlock = 1 << 16;  // large against the 256 counters that each block costs
+
+using Counts = std::array<std::size_t, kDigits>;
+
+template <class Key>
+std::size_t digit_of(Key key, int shift) {
+  return static_cast<std::size_t>(key >> shift) & (kDigits - 1);
+}
+
+template <class Key>
+void sort_by_bytes(std::span<Key> keys, std::span<std::uint32_t> values, Executor& executor) {
+  if (keys.size() != values.size())
+    throw std::invalid_argument("radix_sort: " + std::to_string(keys.size()) + " keys and " +
+                                std::to_string(values.size()) + " values, expected as many of both");
+  const std::size_t n = keys.size(), blocks = (n + kBlock - 1) / kBlock;
+  std::vector<Key> other_keys(n);
+  std::vector<std::uint32_t> other_values(n);
+  std::vector<Counts> counts(blocks);
+  std::span<Key> from_keys = keys, to_keys = other_keys;
+  std::span<std::uint32_t> from_values = values, to_values = other_values;
+
+  for (int shift = 0; shift < int(8 * sizeof(Key)); shift += kDigitBits) {
+    // Count the digits of each block.
+    parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
+      Counts& count = counts[block];
+      count.fill(0);
+      for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i)
+        ++count[digit_of(from_keys[i], shift)];
+    });
+
+    // Turn counts into places: all smaller digits come first, then the same digit of the blocks before.
+    std::size_t place = 0;
+    bool is_same_everywhere = false;
+    for (std::size_t digit = 0; digit < kDigits; ++digit) {
+      const std::size_t first = place;
+      for (Counts& count : counts) {
+        const std::size_t here = count[digit];
+        count[digit] = place;
+        place += here;
+      }
+      is_same_everywhere |= place - first == n;
+    }
+    if (is_same_everywhere) continue;
+
+    // Move the keys, each block in order: that is what makes the sort stable.
+    parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
+      Counts& next = counts[block];
+      for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
+        const std::size_t to = next[digit_of(from_keys[i], shift)]++;
+        to_keys[to] = from_keys[i];
+        to_values[to] = from_values[i];
+      }
+    });
+    std::swap(from_keys, to_keys);
+    std::swap(from_values, to_values);
+  }
+
+  // An odd number of moves leaves the result in the copy.
+  if (from_keys.data() != keys.data()) {
+    std::copy(from_keys.begin(), from_keys.end(), keys.begin());
+    std::copy(from_values.begin(), from_values.end(), values.begin());
+  }
+}
+
+}  // namespace
+
+void radix_sort(std::span<std::uint32_t> keys, std::span<std::uint32_t> values, Executor& executor) {
+  sort_by_bytes(keys, values, executor);
+}
+
+void radix_sort(std::span<std::uint64_t> keys, std::span<std::uint32_t> values, Executor& executor) {
+  sort_by_bytes(keys, values, executor);
+}
+
+}  // namespace boxwood
