@@ -32,6 +32,8 @@
 
 // Floor 1. tree: what organises it.
 #include "boxwood/tree/bvh.h"
+#include "boxwood/tree/validate.h"
+#include "boxwood/tree/metrics.h"
 
 // Floor 2. build: make a tree.
 #include "boxwood/build/options.h"
