@@ -10,9 +10,9 @@
 
 namespace boxwood::io {
 
-/// Writes `image` beside `path` and renames it into place, so that `path` is never a partial file. The ending chooses
-/// the format: .png (8 bits, encoded as sRGB, clamped to [0, 1]; needs 1, 3 or 4 channels), .exr (float), .hdr.
-/// Throws FileError when the ending is not one of these or the file cannot be written.
+/// Writes `image` beside `path` and renames it into place, so that `path` is never a partial file. The ending
+/// chooses the format: .png (8 bits, encoded as sRGB, clamped to [0, 1]; needs 1, 3 or 4 channels), .exr
+/// (float), .hdr. Throws FileError when the ending is not one of these or the file cannot be written.
 void write_image(const std::filesystem::path& path, const Image& image);
 
 /// Reads any picture that OpenImageIO reads, as linear floats. Throws FileError.

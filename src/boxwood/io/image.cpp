@@ -1,0 +1,247 @@
+#include "boxwood/io/image.h"
+
+#include <array>
+#include <bit>
+#include <memory>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "boxwood/io/file_bytes.h"
+
+namespace boxwood::io {
+namespace {
+
+// Larger pictures are taken for damage: no header may ask for more memory than this many pixels and channels
+// need.
+constexpr int kMostPixelsAcross = 1 << 16, kMostChannels = 64;
+constexpr std::int64_t kMostValues = std::int64_t(1) << 29;
+
+// OpenImageIO and OpenEXR work on the calling thread: no thread starts that nobody asked for.
+void keep_to_this_thread() {
+  static const bool is_done = [] {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+    return true;
+  }();
+  (void)is_done;
+}
+
+// A message on one line.
+std::string one_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  for (char& c : text)
+    if (c == '\n' || c == '\r') c = ' ';
+  return text.empty() ? "unknown reason" : text;
+}
+
+// IEC 61966-2-1.
+float srgb_from_linear(float x) {
+  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+}
+float linear_from_srgb(float x) {
+  return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
+// 0 to 255, NaN as 0.
+std::uint8_t to_byte(float x) {
+  return static_cast<std::uint8_t>(255 * min(1.0f, max(0.0f, x)) + 0.5f);
+}
+
+bool is_alpha(const Image& image, int channel) {
+  return image.channels == 4 && channel == 3;
+}
+
+void check_shape(const std::string& path, const Image& image) {
+  const std::size_t values = std::size_t(max(0, image.width)) * max(0, image.height) * max(0, image.channels);
+  if (image.width <= 0 || image.height <= 0 || image.channels <= 0 || image.pixels.size() != values)
+    throw FileError(path, "",
+                    "a picture of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                        " pixels with " + std::to_string(image.channels) + " channels and " +
+                        std::to_string(image.pixels.size()) + " numbers cannot be written");
+}
+
+// The format that OpenImageIO shall try: by the first bytes, since a name may be missing or lie, else by the
+// name's ending.
+std::string format_of(std::string_view bytes, const std::string& name) {
+  constexpr struct {
+    std::string_view magic;
+    const char* format;
+  } kFormats[] = {{"\x89PNG", "png"}, {"\xff\xd8\xff", "jpg"}, {"\x76\x2f\x31\x01", "exr"},
+                  {"#?R", "hdr"},     {"GIF8", "gif"},         {"BM", "bmp"}};
+  for (const auto& [magic, format] : kFormats)
+    if (bytes.starts_with(magic)) return format;
+  if (bytes.size() > 12 && bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "webp";
+  const std::string extension = lower_extension(name);
+  return extension.empty() ? "" : extension.substr(1);
+}
+
+/// A picture file in memory that OpenImageIO has opened.
+class PictureFile {
+ public:
+  PictureFile(std::string_view bytes, const std::string& name)
+      : name_(name), memory_(const_cast<char*>(bytes.data()), bytes.size()) {
+    keep_to_this_thread();
+    // Keep colors as the file has them, not multiplied by alpha.
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1);
+    const std::string format = format_of(bytes, name);
+    input_ = OIIO::ImageInput::create(format.empty() ? "none" : format);
+    if (!input_)
+      throw FileError(name, "", "is not a picture that can be read: " + one_line(OIIO::geterror()));
+    OIIO::ImageSpec found;
+    if (!input_->supports("ioproxy") || !input_->set_ioproxy(&memory_) ||
+        !input_->open(format, found, wishes))
+      throw FileError(name, "", "is not a picture that can be read: " + one_line(input_->geterror()));
+
+    const OIIO::ImageSpec& spec = input_->spec();
+    if (spec.width <= 0 || spec.height <= 0 || spec.width > kMostPixelsAcross ||
+        spec.height > kMostPixelsAcross || spec.depth > 1 || spec.nchannels <= 0 ||
+        spec.nchannels > kMostChannels ||
+        std::int64_t(spec.width) * spec.height * spec.nchannels > kMostValues)
+      throw FileError(name, "",
+                      "a picture of " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                          " pixels with " + std::to_string(spec.nchannels) + " channels is too large");
+  }
+
+  const OIIO::ImageSpec& spec() const { return input_->spec(); }
+  /// Files of whole numbers hold sRGB, files of floats hold linear light.
+  bool is_srgb() const {
+    return !spec().format.is_floating_point() && spec()["oiio:ColorSpace"].get() != "Linear";
+  }
+
+  template <class T>
+  std::vector<T> read(OIIO::TypeDesc type) {
+    std::vector<T> values(std::size_t(spec().width) * spec().height * spec().nchannels);
+    if (!input_->read_image(0, 0, 0, spec().nchannels, type, values.data()))
+      throw FileError(name_, "", "the picture is damaged: " + one_line(input_->geterror()));
+    return values;
+  }
+
+ private:
+  const std::string& name_;
+  OIIO::Filesystem::IOMemReader memory_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+};
+
+Texture decode_texture(std::string_view bytes, const std::string& name) {
+  PictureFile file(bytes, name);
+  const int channels = file.spec().nchannels;
+  Texture texture{name, file.spec().width, file.spec().height, {}, true};
+  texture.texels.resize(std::size_t(texture.width) * texture.height);
+
+  // Floats are encoded as sRGB, which spends the 8 bits where eyes see them.
+  std::vector<std::uint8_t> values;
+  if (file.is_srgb()) {
+    values = file.read<std::uint8_t>(OIIO::TypeDesc::UINT8);
+  } else {
+    const std::vector<float> linear = file.read<float>(OIIO::TypeDesc::FLOAT);
+    values.reserve(linear.size());
+    for (std::size_t i = 0; i < linear.size(); ++i) {
+      const bool is_alpha = (channels == 2 || channels >= 4) && int(i % channels) == (channels == 2 ? 1 : 3);
+      values.push_back(to_byte(is_alpha ? linear[i] : srgb_from_linear(linear[i])));
+    }
+  }
+
+  // One channel is grey, two are grey and alpha, three are RGB, more are RGB and alpha.
+  for (std::size_t i = 0; i < texture.texels.size(); ++i) {
+    const std::uint8_t* from = &values[i * channels];
+    const bool is_grey = channels < 3;
+    texture.texels[i] = {from[0], from[is_grey ? 0 : 1], from[is_grey ? 0 : 2],
+                         channels == 2   ? from[1]
+                         : channels >= 4 ? from[3]
+                                         : std::uint8_t(255)};
+  }
+  return texture;
+}
+
+// OpenImageIO reports what is wrong by return values, but the codecs below it also throw.
+template <class Body>
+auto guarded(const std::string& name, const Body& body) {
+  try {
+    return body();
+  } catch (const FileError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw FileError(name, "", "the picture is damaged: " + one_line(error.what()));
+  }
+}
+
+}  // namespace
+
+void write_image(const std::filesystem::path& path, const Image& image) {
+  keep_to_this_thread();
+  const std::string name = path.string(), extension = lower_extension(path);
+  const bool is_png = extension == ".png";
+  if (!is_png && extension != ".exr" && extension != ".hdr")
+    throw FileError(name, "", "pictures are written as .png, .exr or .hdr, not as '" + extension + "'");
+  check_shape(name, image);
+  if (is_png && image.channels != 1 && image.channels != 3 && image.channels != 4)
+    throw FileError(name, "", "a PNG has 1, 3 or 4 channels, not " + std::to_string(image.channels));
+  if (extension == ".hdr" && image.channels != 3)
+    throw FileError(name, "", "an HDR picture has 3 channels, not " + std::to_string(image.channels));
+
+  OIIO::ImageSpec spec(image.width, image.height, image.channels,
+                       is_png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+  if (extension == ".exr" && image.channel_names.size() == std::size_t(image.channels))
+    spec.channelnames = image.channel_names;
+  spec.attribute("oiio:ColorSpace", is_png ? "sRGB" : "Linear");
+  if (is_png) spec.attribute("oiio:UnassociatedAlpha", 1);
+
+  // Encode into memory, so that a full disk meets one writer that knows how to clean up.
+  std::vector<unsigned char> bytes;
+  guarded(name, [&] {
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("x" + extension);
+    if (!output) throw FileError(name, "", "cannot be encoded: " + one_line(OIIO::geterror()));
+    if (!output->supports("ioproxy"))
+      throw FileError(name, "", "cannot be encoded: this OpenImageIO only writes to disk");
+    output->set_ioproxy(&memory);
+    bool is_written = output->open("x" + extension, spec);
+    if (is_written && is_png) {
+      std::vector<std::uint8_t> encoded(image.pixels.size());
+      for (std::size_t i = 0; i < encoded.size(); ++i) {
+        const float x = image.pixels[i];
+        encoded[i] =
+            to_byte(is_alpha(image, int(i % image.channels)) ? x : srgb_from_linear(min(1.0f, max(0.0f, x))));
+      }
+      is_written = output->write_image(OIIO::TypeDesc::UINT8, encoded.data());
+    } else if (is_written) {
+      is_written = output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
+    }
+    if (!is_written || !output->close())
+      throw FileError(name, "", "cannot be encoded: " + one_line(output->geterror()));
+  });
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Image read_image(const std::filesystem::path& path) {
+  const std::string name = path.string(), bytes = read_file(path);
+  return guarded(name, [&] {
+    PictureFile file(bytes, name);
+    Image image;
+    image.width = file.spec().width;
+    image.height = file.spec().height;
+    image.channels = file.spec().nchannels;
+    image.channel_names = file.spec().channelnames;
+    image.pixels = file.read<float>(OIIO::TypeDesc::FLOAT);
+    if (file.is_srgb())
+      for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        if (int(i % image.channels) != file.spec().alpha_channel)
+          image.pixels[i] = linear_from_srgb(image.pixels[i]);
+    return image;
+  });
+}
+
+Texture read_texture(const std::filesystem::path& path) {
+  const std::string name = path.string(), bytes = read_file(path);
+  return guarded(name, [&] { return decode_texture(bytes, name); });
+}
+
+Texture read_texture(std::span<const std::byte> bytes, const std::string& name) {
+  return guarded(name, [&] {
+    return decode_texture({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+  });
+}
+
+}  // namespace boxwood::io
