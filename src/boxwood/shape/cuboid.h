@@ -1,15 +1,15 @@
 // cuboid.h: does a ray cross an axis-aligned block?
 //
-// The slab method of Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986, in double. The line of a ray meets the
-// surface twice or not at all, so the number of crossings is always even.
+// The slab method of Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986, in double. The line of a
+// ray meets the surface twice or not at all, so the number of crossings is always even.
 #pragma once
 
 #include "boxwood/shape/concept.h"
 
 namespace boxwood {
 
-/// The surface of the block between two corners. `part`: the face, 2 * axis for the lower one, 2 * axis + 1 for the upper.
-/// Never hit when lower > upper on some axis; may be flat.
+/// The surface of the block between two corners. `part`: the face, 2 * axis for the lower one, 2 * axis + 1
+/// for the upper. Never hit when lower > upper on some axis; may be flat.
 struct Cuboid {
   Vec3 lower, upper;
 

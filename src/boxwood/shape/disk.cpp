@@ -1,32 +1,17 @@
 #include "boxwood/shape/disk.h"
 
 #include <array>
-#include <vector>
+
+#include "boxwood/shape/vec3d.h"
 
 namespace boxwood {
-namespace {
 
-struct Vec3d {
-  double x, y, z;
-};
-Vec3d operator+(Vec3d a, Vec3d b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec3d widen(Vec3 a) { return {a.x, a.y, a.z}; }
-Vec3 narrow(Vec3d a) { return {float(a.x), float(a.y), float(a.z)}; }
-
-/// The facing at unit length; zero when it has no direction.
-Vec3d unit(Vec3 facing) {
-  const Vec3d n = widen(facing);
-  const double size = std::sqrt(dot(n, n));
-  return size > 0 ? n * (1 / size) : Vec3d{0, 0, 0};
-}
-
-}  // namespace
+using detail::narrow;
+using detail::Vec3d;
+using detail::widen;
 
 Box3 Disk::box() const {
-  const Vec3d n = unit(facing);
+  const Vec3d n = unit(widen(facing));
   if (!(radius > 0) || !(dot(n, n) > 0)) return {};
   // Along axis k the rim reaches radius * sqrt(1 - n_k^2); a little more for rounding.
   const auto reach = [&](double nk, float c) {
@@ -37,10 +22,12 @@ Box3 Disk::box() const {
   return {center - r, center + r};
 }
 
-Vec3 Disk::normal(const PreparedRay&, const Crossing&) const { return narrow(unit(facing)); }
+Vec3 Disk::normal(const PreparedRay&, const Crossing&) const {
+  return narrow(unit(widen(facing)));
+}
 
 Vec3 Disk::closest_point(Vec3 p) const {
-  const Vec3d n = unit(facing), c = widen(center), to_p = widen(p) - c;
+  const Vec3d n = unit(widen(facing)), c = widen(center), to_p = widen(p) - c;
   Vec3d flat = to_p - n * dot(n, to_p);  // the projection on the plane, from the center
   const double size = std::sqrt(dot(flat, flat));
   if (size > radius) flat = flat * (radius / size);
@@ -48,35 +35,32 @@ Vec3 Disk::closest_point(Vec3 p) const {
 }
 
 bool Disk::overlaps(const Box3& box) const {
-  const Vec3d n = unit(facing), c = widen(center);
-  if (box.is_empty() || !(radius > 0) || !(dot(n, n) > 0) || !this->box().overlaps(box)) return false;
+  if (box.is_empty() || !this->box().overlaps(box)) return false;
+  if (box.contains(center)) return true;
 
-  // Cut the box with the disk's plane: where each of the twelve edges crosses it.
+  // Cut the box with the disk's plane: at most eight corners lie in it, and it crosses at most twelve edges.
+  const Vec3d n = widen(facing), c = widen(center);
   std::array<Vec3d, 8> corner;
   std::array<double, 8> side;
   for (int i = 0; i < 8; ++i) {
     corner[i] = widen(box.corner(i)) - c;
     side[i] = dot(n, corner[i]);
   }
-  std::vector<Vec3d> points;
+  std::array<Vec3d, 20> cut;
+  int count = 0;
   for (int i = 0; i < 8; ++i) {
-    if (side[i] == 0) points.push_back(corner[i]);
+    if (side[i] == 0) cut[count++] = corner[i];
     for (int bit : {1, 2, 4})
-      if (const int j = i | bit; j != i && side[i] * side[j] < 0)
-        points.push_back(corner[i] + (corner[j] - corner[i]) * (side[i] / (side[i] - side[j])));
+      if (const int j = i | bit; j != i && (side[i] < 0) != (side[j] < 0) && side[i] != 0 && side[j] != 0)
+        cut[count++] = corner[i] + (corner[j] - corner[i]) * (side[i] / (side[i] - side[j]));
   }
-  if (points.empty()) return false;
 
-  // The cut is a convex polygon. It overlaps when the center is in the box, or when one of its edges (a segment between two
-  // of its points; those that are diagonals lie inside, so testing all pairs is right too) comes within the radius.
-  if (box.contains(center)) return true;
+  // The cut is a convex polygon without the center inside, so its nearest point is on an edge. The segments
+  // between all pairs of its points are its edges and diagonals, and a diagonal is in the box as well.
   const double r2 = double(radius) * radius;
-  for (const Vec3d& a : points)
-    for (const Vec3d& b : points) {
-      const Vec3d along = b - a;
-      const double size2 = dot(along, along);
-      const double s = size2 > 0 ? std::clamp(-dot(a, along) / size2, 0.0, 1.0) : 0.0;
-      const Vec3d nearest = a + along * s;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const Vec3d nearest = closest_on_segment(Vec3d{}, cut[i], cut[j]);
       if (dot(nearest, nearest) <= r2) return true;
     }
   return false;

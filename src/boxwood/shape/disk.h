@@ -7,8 +7,8 @@
 
 namespace boxwood {
 
-/// The points of a plane within `radius` of `center`. The facing is a direction of any length. Never hit when the
-/// radius is not above 0, when the facing has no direction, or when the ray lies in the plane.
+/// The points of a plane within `radius` of `center`. The facing is a direction of any length. Never hit when
+/// the radius is not above 0, when the facing has no direction, or when the ray lies in the plane.
 struct Disk {
   Vec3 center;
   Vec3 facing{0, 0, 1};

@@ -1,17 +1,19 @@
 // gate.h: why may a tree cull by boxes, whatever the rounding of a shape?
 //
-// Because a crossing counts only at a t inside the (widened) interval of its own shape's box. A t that rounding has put
-// outside is moved to the interval's end; where the interval is empty there is no crossing. Box intervals are monotonic
-// (core/prepared_ray.h), so every box around the shape contains that t, and no culling can lose it. Brute force
-// applies the same rule, and so do all the rival structures: hence *equal*, for every shape, also a user's own.
+// Because a crossing counts only at a t inside the (widened) interval of its own shape's box. A t that
+// rounding has put outside is moved to the interval's end; where the interval is empty there is no crossing.
+// Box intervals are monotonic (core/prepared_ray.h), so every box around the shape contains that t, and no
+// culling can lose it. Brute force applies the same rule, and so do all the rival structures: hence *equal*,
+// for every shape, also a user's own.
 #pragma once
 
 #include "boxwood/shape/concept.h"
 
 namespace boxwood {
 
-/// Stands between a shape and the query's sink: moves each crossing into the interval of the shape's box and passes on
-/// those within [t_min, limit]. The limit that the shape sees is corrected for the move, so that an instance can cull.
+/// Stands between a shape and the query's sink: moves each crossing into the interval of the shape's box and
+/// passes on those within [t_min, limit]. The limit that the shape sees is corrected for the move, so that an
+/// instance can cull.
 template <CrossingSink Sink>
 class BoxGate {
  public:
@@ -36,7 +38,8 @@ class BoxGate {
   float t_min_;
 };
 
-/// The t_min that a ray inside an instance must be prepared with: -inf when every crossing is moved past ours.
+/// The t_min that a ray inside an instance must be prepared with: -inf when every crossing is moved past
+/// ours.
 inline float inner_t_min(const PreparedRay& ray, const Interval& interval) {
   return interval.entry >= ray.t_min ? -kInfinity : ray.t_min;
 }
@@ -45,7 +48,8 @@ inline float inner_t_min(const PreparedRay& ray, const Interval& interval) {
 template <class Shape, CrossingSink Sink>
 class LazyBoxGate {
  public:
-  LazyBoxGate(const PreparedRay& ray, const Shape& shape, Sink& sink) : ray_(ray), shape_(shape), sink_(sink) {}
+  LazyBoxGate(const PreparedRay& ray, const Shape& shape, Sink& sink)
+      : ray_(ray), shape_(shape), sink_(sink) {}
   float limit() { return gate().limit(); }
   void report(const Crossing& crossing) { gate().report(crossing); }
 

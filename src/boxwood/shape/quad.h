@@ -1,14 +1,15 @@
 // quad.h: does a ray cross a quadrilateral?
 //
-// Two watertight triangles that share the diagonal from a to c, so a mesh of quads has no leaks either, and a quad need
-// not be flat.
+// Two watertight triangles that share the diagonal from a to c, so a mesh of quads has no leaks either, and a
+// quad need not be flat.
 #pragma once
 
 #include "boxwood/shape/triangle.h"
 
 namespace boxwood {
 
-/// The corners in order around the face. u runs from a to b, v from a to d. `part`: 0 for the half (a, b, c), 1 for (a, c, d).
+/// The corners in order around the face. u runs from a to b, v from a to d. `part`: 0 for the half (a, b, c),
+/// 1 for (a, c, d).
 struct Quad {
   Vec3 a, b, c, d;
 
@@ -31,11 +32,7 @@ struct Quad {
 
   Vec3 normal(const PreparedRay&, const Crossing& crossing) const { return half(crossing.part).normal(); }
 
-  Vec3 closest_point(Vec3 p) const {
-    const Vec3 first = half(0).closest_point(p), second = half(1).closest_point(p);
-    return length_squared(second - p) < length_squared(first - p) ? second : first;
-  }
-
+  Vec3 closest_point(Vec3 p) const;
   bool overlaps(const Box3& box) const { return half(0).overlaps(box) || half(1).overlaps(box); }
 };
 

@@ -1,7 +1,8 @@
 // shape.h: how can one array hold shapes of different kinds?
 //
-// By a virtual base, as in the textbook's std::vector<Shape*>. AnyShape is the value that meets the concept: it holds a
-// class derived from Shape, or wraps any type that meets the concept itself. The price is a virtual call a test.
+// By a virtual base, as in the textbook's std::vector<Shape*>. AnyShape is the value that meets the concept:
+// it holds a class derived from Shape, or wraps any type that meets the concept itself. The price is a
+// virtual call a test.
 #pragma once
 
 #include <memory>
@@ -32,7 +33,9 @@ class Shape {
   virtual bool has_closest_point() const { return false; }
   virtual Vec3 closest_point(Vec3) const { throw std::logic_error("this shape knows no closest point"); }
   virtual bool has_overlap() const { return false; }
-  virtual bool overlaps(const Box3&) const { throw std::logic_error("this shape knows no overlap with a box"); }
+  virtual bool overlaps(const Box3&) const {
+    throw std::logic_error("this shape knows no overlap with a box");
+  }
 };
 
 /// A shape of any kind, by shared pointer; copies share. Never null.
@@ -47,8 +50,8 @@ class AnyShape {
   AnyShape(std::shared_ptr<S> shape) : AnyShape(std::shared_ptr<const Shape>(std::move(shape))) {}
   /// Wraps a copy of any type that meets the concept.
   template <class S>
-    requires(ShapeType<S> && !std::same_as<S, AnyShape>)
-  AnyShape(S shape) : shape_(std::make_shared<Wrapper<S>>(std::move(shape))) {}
+  requires(ShapeType<S> && !std::same_as<S, AnyShape>) AnyShape(S shape)
+      : shape_(std::make_shared<Wrapper<S>>(std::move(shape))) {}
 
   Box3 box() const { return shape_->box(); }
   template <CrossingSink Sink>
@@ -61,7 +64,9 @@ class AnyShape {
     } adapter(sink);
     shape_->intersect(ray, adapter);
   }
-  Vec3 normal(const PreparedRay& ray, const Crossing& crossing) const { return shape_->normal(ray, crossing); }
+  Vec3 normal(const PreparedRay& ray, const Crossing& crossing) const {
+    return shape_->normal(ray, crossing);
+  }
   Vec3 closest_point(Vec3 p) const { return shape_->closest_point(p); }
   bool overlaps(const Box3& box) const { return shape_->overlaps(box); }
   const Shape& get() const { return *shape_; }
@@ -73,7 +78,9 @@ class AnyShape {
     explicit Wrapper(S shape) : shape_(std::move(shape)) {}
     Box3 box() const override { return shape_.box(); }
     void intersect(const PreparedRay& ray, ShapeSink& sink) const override { shape_.intersect(ray, sink); }
-    Vec3 normal(const PreparedRay& ray, const Crossing& crossing) const override { return shape_.normal(ray, crossing); }
+    Vec3 normal(const PreparedRay& ray, const Crossing& crossing) const override {
+      return shape_.normal(ray, crossing);
+    }
     bool has_closest_point() const override { return HasClosestPoint<S>; }
     Vec3 closest_point(Vec3 p) const override {
       if constexpr (HasClosestPoint<S>) return shape_.closest_point(p);

@@ -1,23 +1,27 @@
 #include "boxwood/shape/sphere.h"
 
+#include "boxwood/shape/vec3d.h"
+
 namespace boxwood {
 
+using detail::narrow;
+using detail::Vec3d;
+using detail::widen;
+
 Vec3 Sphere::normal(const PreparedRay& ray, const Crossing& crossing) const {
-  const double t = crossing.t;
-  const double x = ray.origin.x + t * ray.direction.x - center.x;
-  const double y = ray.origin.y + t * ray.direction.y - center.y;
-  const double z = ray.origin.z + t * ray.direction.z - center.z;
-  const double size = std::sqrt(x * x + y * y + z * z);
-  if (!(size > 0)) return {0, 0, 1};
-  return {float(x / size), float(y / size), float(z / size)};
+  // Take t as it was before it was rounded to a float, which far from a small sphere would turn the normal
+  // about.
+  double t[2] = {crossing.t, crossing.t};
+  cross_line(ray.origin, ray.direction, t);
+  const Vec3d out = widen(ray.origin) - widen(center) + widen(ray.direction) * t[crossing.part & 1];
+  const Vec3d n = unit(out);
+  return dot(n, n) > 0 ? narrow(n) : Vec3{0, 0, 1};
 }
 
 Vec3 Sphere::closest_point(Vec3 p) const {
-  const double x = double(p.x) - center.x, y = double(p.y) - center.y, z = double(p.z) - center.z;
-  const double size = std::sqrt(x * x + y * y + z * z);
-  if (!(size > 0)) return center + Vec3{radius, 0, 0};  // every point is as near
-  const double s = radius / size;
-  return {float(center.x + s * x), float(center.y + s * y), float(center.z + s * z)};
+  const Vec3d out = unit(widen(p) - widen(center));
+  if (!(dot(out, out) > 0)) return center + Vec3{radius, 0, 0};  // every point is as near
+  return narrow(widen(center) + out * radius);
 }
 
 bool Sphere::overlaps(const Box3& box) const {

@@ -1,16 +1,17 @@
 // sphere.h: does a ray cross a sphere?
 //
-// Solved in double, where the squares of any float are exact enough and cannot overflow, with the discriminant taken
-// from the distance between the center and the line (Haines et al., "Precision Improvements for Ray/Sphere
-// Intersection", Ray Tracing Gems, 2019). A line that only touches does not cross.
+// Solved in double, where the squares of any float are exact enough and cannot overflow, with the
+// discriminant taken from the distance between the center and the line (Haines et al., "Precision
+// Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019). A line that only touches does not
+// cross.
 #pragma once
 
 #include "boxwood/shape/concept.h"
 
 namespace boxwood {
 
-/// The surface of a ball. `part` of a crossing: 0 where the line enters, 1 where it leaves. Never hit when the radius is
-/// not above 0.
+/// The surface of a ball. `part` of a crossing: 0 where the line enters, 1 where it leaves. Never hit when
+/// the radius is not above 0.
 struct Sphere {
   Vec3 center;
   float radius = 1;

@@ -1,59 +1,44 @@
 #include "boxwood/shape/triangle.h"
 
+#include "boxwood/shape/vec3d.h"
+
 namespace boxwood {
-namespace {
 
-struct Vec3d {
-  double x, y, z;
-};
-Vec3d widen(Vec3 a) { return {a.x, a.y, a.z}; }
-Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3d cross(Vec3d a, Vec3d b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-}  // namespace
+using detail::narrow;
+using detail::Vec3d;
+using detail::widen;
 
 Vec3 Triangle::normal() const {
-  const Vec3d n = cross(widen(b) - widen(a), widen(c) - widen(a));
-  const double size = std::sqrt(dot(n, n));
-  if (!(size > 0)) return {0, 0, 0};
-  return {float(n.x / size), float(n.y / size), float(n.z / size)};
+  return narrow(unit(cross(widen(b) - widen(a), widen(c) - widen(a))));
 }
 
 Vec3 Triangle::closest_point(Vec3 p) const {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const float d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return a;  // the region in front of vertex a
+  const Vec3d at = widen(p), va = widen(a), vb = widen(b), vc = widen(c);
+  Vec3d best = va;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](Vec3d candidate) {
+    const Vec3d to = candidate - at;
+    if (const double d2 = dot(to, to); d2 < least) least = d2, best = candidate;
+  };
+  consider(closest_on_segment(at, va, vb));
+  consider(closest_on_segment(at, vb, vc));
+  consider(closest_on_segment(at, vc, va));
 
-  const Vec3 bp = p - b;
-  const float d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-
-  const float vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return d1 - d3 > 0 ? a + ab * (d1 / (d1 - d3)) : a;  // edge ab
-
-  const Vec3 cp = p - c;
-  const float d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-
-  const float vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return d2 - d6 > 0 ? a + ac * (d2 / (d2 - d6)) : a;  // edge ac
-
-  const float va = d3 * d6 - d5 * d4;
-  const float along = d4 - d3, back = d5 - d6;
-  if (va <= 0 && along >= 0 && back >= 0) return along + back > 0 ? b + (c - b) * (along / (along + back)) : b;
-
-  const float sum = va + vb + vc;  // inside the face
-  if (!(sum > 0)) return a;
-  return a + ab * (vb / sum) + ac * (vc / sum);
+  // The foot of the perpendicular counts when it lies inside all three edges. For a needle whose normal is
+  // mostly rounding it may be anywhere on the triangle; the edges, asked first, are then nearer.
+  const Vec3d ab = vb - va, ac = vc - va, ap = at - va;
+  const Vec3d n = cross(ab, ac);
+  const double n2 = dot(n, n);
+  const double v = dot(cross(ab, ap), n), u = dot(cross(ap, ac), n);
+  if (n2 > 0 && u > 0 && v > 0 && u + v < n2) consider(va + ab * (u / n2) + ac * (v / n2));
+  return narrow(best);
 }
 
 bool Triangle::overlaps(const Box3& box) const {
   if (box.is_empty() || !this->box().overlaps(box)) return false;  // the three axes of the box
 
   // Move the box to the origin.
-  const Vec3d center{0.5 * box.lower.x + 0.5 * box.upper.x, 0.5 * box.lower.y + 0.5 * box.upper.y,
-                     0.5 * box.lower.z + 0.5 * box.upper.z};
+  const Vec3d center = (widen(box.lower) + widen(box.upper)) * 0.5;
   const Vec3d half = widen(box.upper) - center;
   const Vec3d v[3] = {widen(a) - center, widen(b) - center, widen(c) - center};
 
@@ -63,7 +48,8 @@ bool Triangle::overlaps(const Box3& box) const {
     return std::min({p0, p1, p2}) > reach || std::max({p0, p1, p2}) < -reach;
   };
 
-  // The triangle's normal, then the nine cross products of edges and box axes.
+  // The triangle's normal, then the nine cross products of edges and box axes. Degenerate triangles need no
+  // case of their own: a zero axis separates nothing, and the others are all that a segment needs.
   const Vec3d edges[3] = {v[1] - v[0], v[2] - v[1], v[0] - v[2]};
   if (separated_along(cross(edges[0], edges[1]))) return false;
   for (const Vec3d& e : edges)

@@ -2,22 +2,25 @@
 //
 // Watertight, and each crossing of a closed mesh is reported exactly once, at shared edges and vertices too.
 //
-// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013, moves the ray to the z axis by a shear, so a
-// vertex maps to the same 2D point for every triangle that shares it, and asks for the signs of three edge functions
-// at the origin. We add three things:
+// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013, moves the ray to the z axis by a
+// shear, so a vertex maps to the same 2D point for every triangle that shares it, and asks for the signs of
+// three edge functions at the origin. We add three things:
 //
-//  1. Exact signs. Rounding is monotonic, so the sign of fl(a*b) - fl(c*d) is exact unless the result is 0; then the
+//  1. Exact signs. Rounding is monotonic, so the sign of fl(a*b) - fl(c*d) is exact unless the result is 0;
+//  then the
 //     products are formed in double, where the product of two floats is exact.
-//  2. A tie rule for a ray exactly on an edge: the origin is moved by (e, e^2) for an infinitely small e (Edelsbrunner
+//  2. A tie rule for a ray exactly on an edge: the origin is moved by (e, e^2) for an infinitely small e
+//  (Edelsbrunner
 //     and Muecke, "Simulation of Simplicity", ACM TOG 1990). The edge function of (P, Q) changes by
-//     e (P.y - Q.y) + e^2 (Q.x - P.x), so the first nonzero of the three decides. It is antisymmetric in P and Q, thus exactly
-//     one of the two triangles at an edge, and the right number at a vertex, is crossed. Three equal signs imply area:
-//     degenerate triangles are never hit.
-//  3. t from the plane, not interpolated from the sheared depths: the latter is off by up to 0.2 on large triangles
+//     e (P.y - Q.y) + e^2 (Q.x - P.x), so the first nonzero of the three decides. It is antisymmetric in P
+//     and Q, thus exactly one of the two triangles at an edge, and the right number at a vertex, is crossed.
+//     Three equal signs imply area: degenerate triangles are never hit.
+//  3. t from the plane, not interpolated from the sheared depths: the latter is off by up to 0.2 on large
+//  triangles
 //     along an axis. Where the plane is seen edge-on, or floats overflow, t is interpolated in double.
 //
-// Invariant: every operation is a separate IEEE operation in the order written here (-ffp-contract=off), because SIMD
-// kernels repeat it and must get the same bits.
+// Invariant: every operation is a separate IEEE operation in the order written here (-ffp-contract=off),
+// because SIMD kernels repeat it and must get the same bits.
 #pragma once
 
 #include "boxwood/shape/concept.h"
@@ -47,8 +50,8 @@ inline bool exact_triangle_test(Point2 a, Point2 b, Point2 c) {
 
 }  // namespace detail
 
-/// Tests the line of `ray` against the triangle (a, b, c), both faces. On a crossing fills t, u (weight of b) and v
-/// (weight of c). `t` is not compared with [t_min, t_max].
+/// Tests the line of `ray` against the triangle (a, b, c), both faces. On a crossing fills t, u (weight of b)
+/// and v (weight of c). `t` is not compared with [t_min, t_max].
 inline bool intersect_triangle(const PreparedRay& ray, Vec3 a, Vec3 b, Vec3 c, Crossing& crossing) {
   using detail::Point2;
   const int kx = ray.axis_x, ky = ray.axis_y, kz = ray.axis_z;
@@ -65,15 +68,17 @@ inline bool intersect_triangle(const PreparedRay& ray, Vec3 a, Vec3 b, Vec3 c, C
   float wb = pc.x * pa.y - pc.y * pa.x;
   float wc = pa.x * pb.y - pa.y * pb.x;
 
-  // One product sorts most cases: negative when two signs differ, positive when all agree. Zero, or a NaN after
-  // an overflow (which the sum keeps, though the product may lose it), means that float cannot tell.
+  // One product sorts most cases: negative when two signs differ, positive when all agree. Zero, or a NaN
+  // after an overflow (which the sum keeps, though the product may lose it), means that float cannot tell.
   const float float_sum = wa + wb + wc;
   const float least = min(wa, min(wb, wc)), most = max(wa, max(wb, wc));
   const float product = least * most;
   if (product < 0) return false;
-  if (!(product > 0 && std::fabs(float_sum) < 0x1p120f) && !detail::exact_triangle_test(pa, pb, pc)) return false;
+  if (!(product > 0 && std::fabs(float_sum) < 0x1p120f) && !detail::exact_triangle_test(pa, pb, pc))
+    return false;
 
-  // Weights. The sum cannot be trusted where it is tiny or overflowed; then the exact products decide here too.
+  // Weights. The sum cannot be trusted where it is tiny or overflowed; then the exact products decide here
+  // too.
   double sum = float_sum;
   double da = wa, db = wb, dc = wc;
   if (!(std::fabs(float_sum) > 0x1p-80f && std::fabs(float_sum) < 0x1p120f)) {
@@ -123,7 +128,9 @@ struct Triangle {
   /// By the winding; computed in double, so that tiny and huge triangles have one too. Zero when degenerate.
   Vec3 normal() const;
 
-  /// Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
+  /// The nearest of the three edges' nearest points and the foot of the perpendicular, in double. A
+  /// degenerate triangle has a nearest point as well. Compare Ericson, Real-Time Collision Detection, 2005,
+  /// section 5.1.5, which saves work by regions but fails where two vertices coincide.
   Vec3 closest_point(Vec3 p) const;
 
   /// The separating axis test of Akenine-Moeller, "Fast 3D Triangle-Box Overlap Testing", 2001, in double.
