@@ -1,2 +1,61 @@
+// main.cpp: where does the program start, and how does it end?
+//
+// Exit codes: 0 done, 1 failed, 2 wrong usage. Whatever goes wrong is one line on stderr that starts with
+// "boxwood: ".
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "boxwood/core/error.h"
 #include "commands.h"
-int main() { return 0; }
+
+namespace {
+
+constexpr int kFailed = 1, kWrongUsage = 2;
+
+/// Messages of libraries may have line breaks; ours are one line.
+int complain(std::string message, int exit_code) {
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  for (char& c : message)
+    if (c == '\n' || c == '\r') c = ' ';
+  fmt::print(stderr, "boxwood: {}\n", message);
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{
+      "Boxwood ray traces scenes through bounding volume hierarchies, and shows what that saves."};
+  program.name("boxwood");
+  program.set_version_flag("--version", "boxwood " BOXWOOD_VERSION);
+  program.require_subcommand(1);
+  program.footer(
+      "Examples:\n"
+      "  boxwood render -o picture.png               a picture of the scene that the program brings along\n"
+      "  boxwood render bunny.obj -o bunny.png       a picture of a file\n"
+      "  boxwood info bunny.obj                      what is in it, and what its tree looks like\n"
+      "  boxwood ladder                              from brute force to the best tree, measured\n"
+      "'boxwood COMMAND --help' tells more. Exit codes: 0 done, 1 failed, 2 wrong usage.");
+  boxwood::app::add_render(program);
+  boxwood::app::add_info(program);
+  boxwood::app::add_ladder(program);
+
+  try {
+    program.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& asked) {  // --help and --version
+    return program.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    return complain(std::string(error.what()) + " (see boxwood --help)", kWrongUsage);
+  } catch (const boxwood::Cancelled&) {
+    return complain("stopped; nothing was written", kFailed);
+  } catch (const std::bad_alloc&) {
+    return complain("there is not enough memory for this", kFailed);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kFailed);
+  }
+}

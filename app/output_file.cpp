@@ -1,0 +1,35 @@
+#include "output_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "boxwood/core/error.h"
+
+namespace boxwood::app {
+
+void check_writable(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw FileError(path.string(), "", "this is a folder, expected the name of a file to write");
+
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw FileError(path.string(), "",
+                    "cannot be written, because the folder " + folder.string() + " does not exist");
+
+  // Permissions, full disks and read-only mounts have many rules; making a file there asks them all.
+  const std::string probe = (folder / (".boxwood-probe-" + std::to_string(getpid()))).string();
+  const int file = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (file < 0)
+    throw FileError(path.string(), "",
+                    "cannot be written: the folder " + folder.string() + " takes no new file (" +
+                        std::strerror(errno) + ")");
+  close(file);
+  unlink(probe.c_str());
+}
+
+}  // namespace boxwood::app

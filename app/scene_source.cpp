@@ -1,0 +1,50 @@
+#include "scene_source.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "boxwood/gallery/gallery.h"
+#include "boxwood/io/load.h"
+
+namespace boxwood::app {
+namespace {
+
+/// How a user writes the entry: "stilllife", or "spheres:N" when it has a size.
+std::string written(const gallery::Entry& entry) {
+  return std::string(entry.name) + (entry.default_size > 0 ? ":N" : "");
+}
+
+}  // namespace
+
+SceneDesc open_scene(const std::string& name_or_path, Executor& executor) {
+  if (gallery::is_known(name_or_path.substr(0, name_or_path.find(':')))) return gallery::make(name_or_path);
+
+  std::error_code ignored;
+  if (!std::filesystem::exists(name_or_path, ignored)) {
+    std::string names;
+    for (const gallery::Entry& entry : gallery::entries())
+      names += (names.empty() ? "" : ", ") + written(entry);
+    throw FileError(
+        name_or_path, "",
+        "there is no such file, and no scene of that name that the program makes itself (" + names + ")");
+  }
+  return io::load(name_or_path, &executor);
+}
+
+void print_warnings(const SceneDesc& desc) {
+  for (const std::string& warning : desc.warnings) fmt::print(stderr, "boxwood: warning: {}\n", warning);
+}
+
+std::string gallery_help() {
+  std::string help = "Scenes that the program makes itself:\n";
+  for (const gallery::Entry& entry : gallery::entries()) {
+    help += fmt::format("  {:<14} {}", written(entry), entry.description);
+    if (entry.default_size > 0) help += fmt::format(" (N is {} when not given)", entry.default_size);
+    help += "\n";
+  }
+  return help;
+}
+
+}  // namespace boxwood::app

@@ -1,0 +1,22 @@
+// scene_source.h: where does the scene that a user names come from?
+#pragma once
+
+#include <string>
+
+#include "boxwood/core/parallel.h"
+#include "boxwood/scene/description.h"
+
+namespace boxwood::app {
+
+/// A scene that the program makes itself when the part before a colon is the name of one ("spheres:1000"),
+/// else a file. Throws std::invalid_argument or FileError; for a file that is not there the message also
+/// lists the names.
+SceneDesc open_scene(const std::string& name_or_path, Executor& executor);
+
+/// Prints each warning of the scene on stderr, a line each.
+void print_warnings(const SceneDesc& desc);
+
+/// For help texts: a line for each scene that the program makes itself.
+std::string gallery_help();
+
+}  // namespace boxwood::app

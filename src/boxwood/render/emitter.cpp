@@ -1,0 +1,203 @@
+#include "boxwood/render/emitter.h"
+
+#include <algorithm>
+
+#include "boxwood/render/light.h"
+#include "boxwood/render/material.h"
+#include "boxwood/render/warp.h"
+
+namespace boxwood::render {
+namespace {
+
+constexpr std::uint32_t kNoEmitter = 0xffffffffu;
+
+/// A bound of the rounding of a point that was put together from a corner and two edges, or from a middle and
+/// a radius, and of a transform.
+Vec3 position_error(Vec3 parts) {
+  return abs(parts) * 0x1p-19f;
+}
+
+std::uint32_t emitters_per_part(const Shapes& shapes) {
+  if (std::holds_alternative<std::vector<Quad>>(shapes)) return 1;
+  if (std::holds_alternative<std::vector<Cuboid>>(shapes)) return 2;
+  return 0;
+}
+
+}  // namespace
+
+EmitterGroup::EmitterGroup(const SceneDesc& desc, const Instance& instance)
+    : world_from_object_(instance.world_from_object),
+      object_from_world_(inverse(instance.world_from_object)),
+      volume_scale_(static_cast<float>(std::fabs(boxwood::determinant(instance.world_from_object)))) {
+  const Geometry& geometry = desc.geometries[instance.geometry.value];
+  const auto material_at = [&](std::size_t primitive) -> const Material& {
+    if (instance.material.is_valid()) return material_of(desc, instance.material);
+    return material_of(desc, geometry.materials.empty() ? geometry.material : geometry.materials[primitive]);
+  };
+
+  // Most geometry does not shine; find out before anything is stored for it.
+  const std::size_t count = primitive_count(geometry);
+  const bool is_uniform = instance.material.is_valid() || geometry.materials.empty();
+  bool shines = false;
+  for (std::size_t i = 0; i < (is_uniform ? std::min<std::size_t>(count, 1) : count) && !shines; ++i)
+    shines = is_emissive(material_at(i));
+  if (!shines || std::holds_alternative<std::vector<AnyShape>>(geometry.shapes)) return;
+
+  emitters_per_part_ = emitters_per_part(geometry.shapes);
+  first_emitter_.assign(count, kNoEmitter);
+  std::visit(
+      [&](const auto& shapes) {
+        using Shapes = std::decay_t<decltype(shapes)>;
+        for (std::size_t i = 0; i < count; ++i) {
+          const Material& material = material_at(i);
+          if (!is_emissive(material)) continue;
+          first_emitter_[i] = static_cast<std::uint32_t>(emitters_.size());
+          if constexpr (std::is_same_v<Shapes, TriangleMesh>) {
+            const auto& [a, b, c] = shapes.indices[i];
+            add(Triangle{shapes.positions[a], shapes.positions[b], shapes.positions[c]}, material);
+          } else if constexpr (!std::is_same_v<Shapes, std::vector<AnyShape>>) {
+            add(shapes[i], material);
+          }
+        }
+      },
+      geometry.shapes);
+
+  // Choose by power: each emitter's share of the whole.
+  for (const Emitter& emitter : emitters_) {
+    strength_ +=
+        double(emitter.area) * brightness(emitter.radiance) * (emitter.emits_from_both_sides ? 2 : 1);
+    running_strength_.push_back(strength_);
+  }
+  double before = 0;
+  for (std::size_t i = 0; i < emitters_.size() && strength_ > 0; ++i) {
+    emitters_[i].probability = static_cast<float>((running_strength_[i] - before) / strength_);
+    before = running_strength_[i];
+  }
+}
+
+void EmitterGroup::add(const Triangle& triangle, const Material& material) {
+  Emitter emitter{Emitter::Kind::triangle};
+  emitter.a = world_from_object_.point(triangle.a);
+  emitter.x = world_from_object_.point(triangle.b) - emitter.a;
+  emitter.y = world_from_object_.point(triangle.c) - emitter.a;
+  emitter.area = 0.5f * length(cross(emitter.x, emitter.y));
+  emitter.normal = transform_normal(object_from_world_, triangle.normal());
+  bounds_.extend(emitter.a);
+  bounds_.extend(emitter.a + emitter.x);
+  bounds_.extend(emitter.a + emitter.y);
+  finish(emitter, material);
+}
+
+void EmitterGroup::add(const Quad& quad, const Material& material) {
+  add(quad.half(0), material);
+  add(quad.half(1), material);
+}
+
+/// Two triangles for each face, in the order of Cuboid's parts.
+void EmitterGroup::add(const Cuboid& cuboid, const Material& material) {
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2, across = (axis + 1) % 3, along = (axis + 2) % 3;
+    const bool is_upper = face % 2 == 1;
+    Vec3 corner = cuboid.lower;
+    corner[axis] = is_upper ? cuboid.upper[axis] : cuboid.lower[axis];
+    Vec3 b = corner, c = corner, d = corner;
+    b[across] = c[across] = cuboid.upper[across];
+    c[along] = d[along] = cuboid.upper[along];
+    add(is_upper ? Quad{corner, b, c, d} : Quad{corner, d, c, b}, material);
+  }
+}
+
+void EmitterGroup::add(const Disk& disk, const Material& material) {
+  Emitter emitter{Emitter::Kind::disk};
+  const Frame frame(normalize(disk.facing));
+  emitter.a = world_from_object_.point(disk.center);
+  emitter.x = world_from_object_.vector(frame.x * disk.radius);
+  emitter.y = world_from_object_.vector(frame.y * disk.radius);
+  emitter.area = kPi * length(cross(emitter.x, emitter.y));
+  emitter.normal = transform_normal(object_from_world_, frame.z);
+  bounds_.extend(transform_box(world_from_object_, disk.box()));
+  finish(emitter, material);
+}
+
+void EmitterGroup::add(const Sphere& sphere, const Material& material) {
+  Emitter emitter{Emitter::Kind::sphere};
+  emitter.a = sphere.center;
+  emitter.radius = sphere.radius;
+  // Squeezed spheres: the area for a mean scale will do, since it only guides the choice.
+  emitter.area = 4 * kPi * sphere.radius * sphere.radius * std::cbrt(volume_scale_ * volume_scale_);
+  emitter.normal = {0, 0, 1};
+  bounds_.extend(transform_box(world_from_object_, sphere.box()));
+  finish(emitter, material);
+}
+
+void EmitterGroup::finish(Emitter emitter, const Material& material) {
+  emitter.radiance = material.emission;
+  emitter.emits_from_both_sides = material.emits_from_both_sides;
+  emitter.normal = normalize(emitter.normal);
+  // Shapes that cannot be hit cannot shine either.
+  if (!(emitter.area > 0) || !std::isfinite(emitter.area) || !is_finite(emitter.normal)) emitter.area = 0;
+  emitters_.push_back(emitter);
+}
+
+EmitterPoint EmitterGroup::sample(Vec3 receiver, float choice, Vec2 u) const {
+  // Choose an emitter by its share of the strength.
+  const auto found = std::upper_bound(running_strength_.begin(), running_strength_.end(), choice * strength_);
+  const auto index = std::min<std::size_t>(static_cast<std::size_t>(found - running_strength_.begin()),
+                                           emitters_.size() - 1);
+  const Emitter& emitter = emitters_[index];
+  if (emitter.kind == Emitter::Kind::sphere) return sample_sphere(emitter, receiver, u);
+
+  const Vec2 weights = emitter.kind == Emitter::Kind::triangle ? uniform_triangle(u) : uniform_disk(u);
+  EmitterPoint point{};
+  point.surface.position = emitter.a + emitter.x * weights.x + emitter.y * weights.y;
+  point.surface.error = position_error(abs(emitter.a) + abs(emitter.x) + abs(emitter.y));
+  point.surface.normal = point.surface.shading_normal = emitter.normal;
+  point.radiance = emitter.radiance;
+  point.emits_from_both_sides = emitter.emits_from_both_sides;
+  point.pdf_area = emitter.probability / emitter.area;
+  return point;
+}
+
+/// World area over object area, for a piece of surface with this normal: |det M| |M^-T n|.
+float EmitterGroup::area_scale(Vec3 object_normal) const {
+  return volume_scale_ * length(transform_normal(object_from_world_, object_normal));
+}
+
+float EmitterGroup::sphere_density(const Emitter& sphere, Vec3 object_normal, Vec3 receiver) const {
+  const Vec3 to_receiver = object_from_world_.point(receiver) - sphere.a;
+  const bool is_outside = length_squared(to_receiver) > sphere.radius * sphere.radius;
+  if (is_outside && !(dot(to_receiver, object_normal) > 0)) return 0;
+  const float object_area = (is_outside ? 2 : 4) * kPi * sphere.radius * sphere.radius;
+  return sphere.probability / (object_area * area_scale(object_normal));
+}
+
+EmitterPoint EmitterGroup::sample_sphere(const Emitter& sphere, Vec3 receiver, Vec2 u) const {
+  // From outside only the half that faces the receiver can be seen; from inside all of it.
+  const Vec3 to_receiver = object_from_world_.point(receiver) - sphere.a;
+  const bool is_outside = length_squared(to_receiver) > sphere.radius * sphere.radius;
+  const Vec3 normal =
+      is_outside ? Frame(normalize(to_receiver)).to_world(uniform_cone(u, 1)) : uniform_cone(u, 2);
+
+  EmitterPoint point{};
+  point.surface.position = world_from_object_.point(sphere.a + normal * sphere.radius);
+  const Vec3 reach = abs(sphere.a) + splat(sphere.radius);
+  point.surface.error =
+      position_error(abs(world_from_object_.x) * reach.x + abs(world_from_object_.y) * reach.y +
+                     abs(world_from_object_.z) * reach.z + abs(world_from_object_.origin));
+  point.surface.normal = point.surface.shading_normal =
+      normalize(transform_normal(object_from_world_, normal));
+  point.radiance = sphere.radiance;
+  point.emits_from_both_sides = sphere.emits_from_both_sides;
+  point.pdf_area = sphere_density(sphere, normal, receiver);
+  return point;
+}
+
+float EmitterGroup::pdf_area(PrimId primitive_id, std::uint32_t part, Vec3 position, Vec3 receiver) const {
+  const std::uint32_t first = first_emitter_[primitive_id.value];
+  if (first == kNoEmitter) return 0;
+  const Emitter& emitter = emitters_[first + part * emitters_per_part_];
+  if (emitter.kind != Emitter::Kind::sphere) return emitter.area > 0 ? emitter.probability / emitter.area : 0;
+  return sphere_density(emitter, normalize(object_from_world_.point(position) - emitter.a), receiver);
+}
+
+}  // namespace boxwood::render

@@ -1,0 +1,40 @@
+// fresnel.h: which share of the light does a boundary reflect?
+#pragma once
+
+#include "boxwood/core/vec.h"
+
+namespace boxwood::render {
+
+/// The share, of unpolarized light, that the smooth boundary of a dielectric reflects. `cosine`, in [0, 1],
+/// is that of the angle to the normal on the side the light is on; `eta` is the index of refraction of the
+/// other side over that of this side. 1 under total internal reflection.
+inline float fresnel_dielectric(float cosine, float eta) {
+  const float sine_squared = (1 - cosine * cosine) / (eta * eta);  // on the other side, by Snell's law
+  if (sine_squared >= 1) return 1;
+  const float other_cosine = std::sqrt(1 - sine_squared);
+  const float parallel = (eta * cosine - other_cosine) / (eta * cosine + other_cosine);
+  const float perpendicular = (cosine - eta * other_cosine) / (cosine + eta * other_cosine);
+  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+/// The share that a metal reflects whose color, seen head-on, is `color`. Schlick, "An Inexpensive BRDF Model
+/// for Physically-based Rendering", 1994.
+inline Vec3 fresnel_metal(float cosine, Vec3 color) {
+  const float x = max(0.0f, 1 - cosine), x2 = x * x;
+  return color + (splat(1) - color) * (x2 * x2 * x);
+}
+
+/// The share that the boundary reflects of light that comes from all directions of the *dense* side alike.
+/// Worked out from the outer side, where the integral is smooth, by the reciprocity (1 - inner) eta^2 = 1 -
+/// outer.
+inline float internal_diffuse_reflectance(float eta) {
+  constexpr int kSteps = 256;
+  double passed = 0;  // midpoint rule for the integral of (1 - F) d(sin^2)
+  for (int i = 0; i < kSteps; ++i) {
+    const float sine_squared = (static_cast<float>(i) + 0.5f) / kSteps;
+    passed += 1 - fresnel_dielectric(std::sqrt(1 - sine_squared), eta);
+  }
+  return static_cast<float>(1 - passed / kSteps / (double(eta) * eta));
+}
+
+}  // namespace boxwood::render

@@ -1,0 +1,63 @@
+// warp.h: how does a uniform point of the unit square become a point on something else?
+//
+// Each map keeps areas in proportion, so that well spread samples stay well spread. Densities stand beside
+// the maps.
+#pragma once
+
+#include "boxwood/core/vec.h"
+
+namespace boxwood::render {
+
+inline constexpr float kPi = 3.14159265358979f;
+
+/// Uniform on the unit disk. Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997.
+inline Vec2 uniform_disk(Vec2 u) {
+  const float a = 2 * u.x - 1, b = 2 * u.y - 1;
+  if (a == 0 && b == 0) return {0, 0};
+  const bool is_wide = std::fabs(a) > std::fabs(b);
+  const float radius = is_wide ? a : b;
+  const float angle = is_wide ? (kPi / 4) * (b / a) : (kPi / 2) - (kPi / 4) * (a / b);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/// On the hemisphere around +z with density cos / pi.
+inline Vec3 cosine_hemisphere(Vec2 u) {
+  const Vec2 d = uniform_disk(u);
+  return {d.x, d.y, std::sqrt(max(0.0f, 1 - d.x * d.x - d.y * d.y))};
+}
+
+/// Uniform, with density 1 / (2 pi (1 - cos_angle)), on the directions within an angle of +z. `versine` is 1
+/// - cos_angle: 1 for the hemisphere, 2 for the sphere, and exact for cones as narrow as the sun's.
+inline Vec3 uniform_cone(Vec2 u, float versine) {
+  const float below_top = u.x * versine;
+  const float radius = std::sqrt(max(0.0f, below_top * (2 - below_top)));
+  const float angle = 2 * kPi * u.y;
+  return {radius * std::cos(angle), radius * std::sin(angle), 1 - below_top};
+}
+
+/// The weights of the second and third vertex of a triangle, uniform over its area. Heitz, "A Low-Distortion
+/// Map Between Triangle and Square", 2019.
+inline Vec2 uniform_triangle(Vec2 u) {
+  if (u.y > u.x) {
+    const float x = 0.5f * u.x;
+    return {x, u.y - x};
+  }
+  const float y = 0.5f * u.y;
+  return {u.x - y, y};
+}
+
+/// From -1 to 1 with a density that falls off linearly from 0: a tent.
+inline float tent(float u) {
+  return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
+}
+
+/// Three unit vectors at right angles; z is the one that matters.
+struct Frame {
+  Vec3 x, y, z;
+
+  explicit Frame(Vec3 unit_z) : z(unit_z) { orthonormal_basis(z, x, y); }
+  Vec3 to_world(Vec3 local) const { return x * local.x + y * local.y + z * local.z; }
+  Vec3 to_local(Vec3 world) const { return {dot(x, world), dot(y, world), dot(z, world)}; }
+};
+
+}  // namespace boxwood::render
