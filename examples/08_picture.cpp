@@ -1,8 +1,9 @@
-// 08_picture: how do rays become a picture? One through each pixel; the color of what it hits, and a ray to the sun.
+// 08_picture: how do rays become a picture? One through each pixel; the color of what it hits, and a ray to
+// the sun.
+#include <cstdio>
+
 #include <boxwood/boxwood.h>
 #include <boxwood/io/image.h>
-
-#include <cstdio>
 
 using namespace boxwood;
 
@@ -35,7 +36,8 @@ int main(int argc, char** argv) {
         const Surface surface = surface_at(scene, ray, hit);
         const float slope = max(dot(surface.normal, to_sun), 0.0f);
         const bool is_lit = slope > 0 && !scene.any_hit(surface.spawn(to_sun));
-        color = scene.description().materials[surface.material.value].color * (is_lit ? 0.2f + 0.8f * slope : 0.2f);
+        color = scene.description().materials[surface.material.value].color *
+                (is_lit ? 0.2f + 0.8f * slope : 0.2f);
       }
       for (int c = 0; c < 3; ++c) picture.at(x, y)[c] = color[c];
     }

@@ -24,7 +24,7 @@ foreach(script IN LISTS scripts)
   endforeach()
 endforeach()
 
-foreach(project core)
+foreach(project core wings)
   run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/${project} -B ${SCRATCH}/${project} -G ${GENERATOR}
     -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DCMAKE_BUILD_TYPE=${BUILD_TYPE} "-DCMAKE_CXX_FLAGS_DEBUG=${DEBUG_FLAGS}")
   run(${CMAKE_COMMAND} --build ${SCRATCH}/${project})
