@@ -21,6 +21,9 @@ constexpr Format kFormats[] = {
     {".obj", load_obj},
     {".ply", load_ply},
     {".stl", load_stl},
+    {".gltf", load_gltf},
+    {".glb", load_gltf},
+    {".pbrt", load_pbrt},
 };
 
 const Format* find_format(const std::filesystem::path& path) {
