@@ -26,6 +26,9 @@ class Files : public testing::Test {
 
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {
+    // A new file each time: file systems may wait for the disk when an old one is overwritten.
+    std::error_code error;
+    std::filesystem::remove(path(name), error);
     std::ofstream(path(name), std::ios::binary)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return path(name);
