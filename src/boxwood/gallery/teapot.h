@@ -1,9 +1,8 @@
 // teapot.h: what does the Utah teapot look like, as triangles?
 //
 // The 32 bicubic Bezier patches of Martin Newell, University of Utah, 1975, in the proportions of Blinn's
-// tables
-// ("What, Teapots Again?", IEEE CG&A, 1987), bottom included. Most of the 306 control points follow from
-// symmetry; teapot.cpp writes down 34 rows of numbers that give them all.
+// tables ("What, Teapots Again?", IEEE CG&A, 1987), bottom included. Most of the 306 control points follow
+// from symmetry; teapot.cpp writes down 34 rows of numbers that give them all.
 #pragma once
 
 #include <array>
