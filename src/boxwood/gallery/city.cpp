@@ -80,15 +80,15 @@ SceneDesc make_city(std::uint64_t towers) {
 
   Material asphalt;
   asphalt.name = "asphalt";
-  asphalt.color = {0.13f, 0.13f, 0.14f};
+  asphalt.color = {0.22f, 0.21f, 0.20f};
   const float edge = 4 * width + 400;
   desc.add(std::vector<Quad>{{{-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}, {-edge, 0, -edge}}},
            desc.add(std::move(asphalt)));
 
   // From above a corner of the town, never farther off than a town of 60 lots asks for.
   const float reach = min(width, 75);
-  desc.camera = look_at_camera({0.62f * reach, 8 + 0.42f * reach, 0.85f * reach}, {0, 2, 0}, 30, 1280, 720);
-  desc.sky = clear_sky({-0.7f, 0.55f, 0.35f});
+  desc.camera = look_at_camera({0.75f * reach, 6 + 0.42f * reach, 1.1f * reach}, {0, 5, 0}, 26, 1280, 720);
+  desc.sky = clear_sky({-0.8f, 0.5f, 0.3f});
   desc.sky->ground = desc.sky->horizon * 0.8f;  // haze where the ground ends
   return desc;
 }

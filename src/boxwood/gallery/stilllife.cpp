@@ -42,28 +42,40 @@ void add_lamp(SceneDesc& desc, const char* name, Vec3 center, Vec3 target, float
   desc.add(Geometry{std::vector<Quad>{quad}, desc.add(std::move(lamp)), {}, name});
 }
 
-/// A floor that bends up into a wall in a quarter of a circle; x is its width, -z the way to the wall.
+/// A floor that bends up into a wall in a quarter of a circle; x is its width, -z the way to the wall. A grid
+/// of well-shaped triangles rather than long strips, because the error bounds of a hit grow with how thin its
+/// triangle is.
 TriangleMesh backdrop() {
-  constexpr float kHalfWidth = 40, kFront = 30, kBendStart = -5, kBendRadius = 7, kTop = 30;
-  constexpr int kSteps = 64;
+  constexpr float kHalfWidth = 32, kFront = 28, kBendStart = -3, kBendRadius = 9, kTop = 25;
+  constexpr std::uint32_t kColumns = 128, kBendRows = 64, kFlatRows = 32;
   TriangleMesh mesh;
-  const auto add_row = [&mesh](float y, float z, Vec3 normal) {
-    for (const float x : {-kHalfWidth, kHalfWidth}) {
-      mesh.positions.push_back({x, y, z});
+  std::uint32_t rows = 0;
+  const auto add_row = [&](float y, float z, Vec3 normal) {
+    for (std::uint32_t column = 0; column <= kColumns; ++column) {
+      mesh.positions.push_back({kHalfWidth * (2 * float(column) / kColumns - 1), y, z});
       mesh.normals.push_back(normal);
     }
+    ++rows;
   };
-  add_row(0, kFront, {0, 1, 0});
-  for (int step = 0; step <= kSteps; ++step) {
-    // The point of the unit circle at a tangent of half the angle: no sine, the same bits everywhere.
-    const float t = float(step) / kSteps, sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
+
+  // The floor, the bend and the wall, front to back and upwards.
+  for (std::uint32_t row = 0; row < kFlatRows; ++row)
+    add_row(0, kFront + (kBendStart - kFront) * float(row) / kFlatRows, {0, 1, 0});
+  for (std::uint32_t row = 0; row <= kBendRows; ++row) {
+    // A point of the unit circle from the tangent of half its angle: no sine, so the same bits everywhere.
+    const float t = float(row) / kBendRows, sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
     add_row(kBendRadius * (1 - cosine), kBendStart - kBendRadius * sine, {0, cosine, sine});
   }
-  add_row(kTop, kBendStart - kBendRadius, {0, 0, 1});
-  for (std::uint32_t i = 0; i + 3 < mesh.positions.size(); i += 2) {
-    mesh.indices.push_back({i, i + 1, i + 3});
-    mesh.indices.push_back({i, i + 3, i + 2});
-  }
+  for (std::uint32_t row = 1; row <= kFlatRows; ++row)
+    add_row(kBendRadius + (kTop - kBendRadius) * float(row) / kFlatRows, kBendStart - kBendRadius, {0, 0, 1});
+
+  constexpr std::uint32_t kStride = kColumns + 1;
+  for (std::uint32_t row = 0; row + 1 < rows; ++row)
+    for (std::uint32_t column = 0; column < kColumns; ++column) {
+      const std::uint32_t corner = row * kStride + column;
+      mesh.indices.push_back({corner, corner + 1, corner + kStride + 1});
+      mesh.indices.push_back({corner, corner + kStride + 1, corner + kStride});
+    }
   return mesh;
 }
 
@@ -73,7 +85,7 @@ SceneDesc make_stilllife() {
   SceneDesc desc;
 
   // Warm colors against the teal of the pot.
-  const MaterialId paper = add_material(desc, "paper", Kind::matte, {0.74f, 0.68f, 0.60f});
+  const MaterialId paper = add_material(desc, "paper", Kind::matte, {0.70f, 0.57f, 0.45f});
   const MaterialId teal = add_material(desc, "teal glaze", Kind::plastic, {0.015f, 0.21f, 0.23f}, 0.03f);
   const MaterialId gold = add_material(desc, "gold", Kind::metal, {1.0f, 0.72f, 0.29f}, 0.06f);
   const MaterialId copper = add_material(desc, "brushed copper", Kind::metal, {0.93f, 0.51f, 0.37f}, 0.28f);
@@ -95,27 +107,29 @@ SceneDesc make_stilllife() {
   for (Vec3& n : teapot.normals) n = normalize(world_from_pot.vector(n));
   desc.add(Geometry{std::move(teapot), teal, {}, "teapot"});
 
-  desc.add(Geometry{sphere_flake({3.5f, 0.95f, -1.6f}, 0.95f, {0, 1, 0}, 5), gold, {}, "sphere flake"});
+  // Tilted towards the viewer, so that the bare side below is hidden and the lowest balls rest on the table.
+  const Vec3 flake_up = normalize({-0.15f, 0.9f, 0.42f});
+  desc.add(Geometry{sphere_flake({3.3f, 1.1f, -1.5f}, 0.9f, flake_up, 5), gold, {}, "sphere flake"});
 
-  add_sphere(desc, "glass sphere", 2.0f, 2.3f, 0.78f, glass);
-  add_sphere(desc, "chrome sphere", -3.9f, 2.2f, 0.6f, chrome);
-  add_sphere(desc, "coral sphere", 4.0f, 1.5f, 0.62f, coral);
-  add_sphere(desc, "copper sphere", -5.4f, -0.4f, 0.8f, copper);
-  add_sphere(desc, "amber sphere", 0.2f, 3.3f, 0.36f, amber);
-  add_sphere(desc, "ivory sphere", -2.5f, 3.2f, 0.32f, ivory);
-  add_sphere(desc, "mustard sphere", 3.1f, 3.5f, 0.28f, mustard);
-  add_sphere(desc, "plum sphere", 1.3f, -2.6f, 0.7f, plum);
+  add_sphere(desc, "glass sphere", 1.75f, 2.0f, 0.8f, glass);
+  add_sphere(desc, "chrome sphere", -4.1f, 2.0f, 0.6f, chrome);
+  add_sphere(desc, "coral sphere", 3.9f, 1.7f, 0.6f, coral);
+  add_sphere(desc, "copper sphere", -5.2f, -0.9f, 0.95f, copper);
+  add_sphere(desc, "amber sphere", 0.15f, 3.2f, 0.36f, amber);
+  add_sphere(desc, "ivory sphere", -2.75f, 3.0f, 0.32f, ivory);
+  add_sphere(desc, "mustard sphere", 2.9f, 3.3f, 0.27f, mustard);
+  add_sphere(desc, "plum sphere", 5.6f, -0.2f, 0.75f, plum);
 
-  add_lamp(desc, "soft lamp", {-7, 9.5f, 7}, {0, 0.8f, 0}, 2.8f, 2.8f, {15.5f, 14.2f, 12.4f});
-  add_lamp(desc, "edge lamp", {9, 5.5f, -1.5f}, {0, 1.2f, 0}, 0.7f, 2.6f, {9, 9.6f, 11});
+  add_lamp(desc, "soft lamp", {-8.5f, 8.5f, 5}, {0, 0.8f, 0}, 2.0f, 2.0f, {36, 32.5f, 28});
+  add_lamp(desc, "edge lamp", {9, 6, -3}, {0, 1.2f, 0}, 0.8f, 2.4f, {7.5f, 8.2f, 9.6f});
 
   Sky sky;
-  sky.zenith = {0.22f, 0.27f, 0.36f};
-  sky.horizon = {0.34f, 0.36f, 0.40f};
-  sky.ground = {0.12f, 0.11f, 0.10f};
+  sky.zenith = {0.20f, 0.25f, 0.34f};
+  sky.horizon = {0.20f, 0.21f, 0.24f};
+  sky.ground = {0.10f, 0.09f, 0.08f};
   desc.sky = sky;
 
-  Camera camera = look_at_camera({1.0f, 3.9f, 14.5f}, {0.05f, 1.28f, 0}, 26, 960, 540);
+  Camera camera = look_at_camera({1.0f, 5.4f, 14.0f}, {0.1f, 1.12f, 0}, 25.5f, 960, 540);
   camera.lens_radius = 0.07f;
   camera.focus_distance = 13.2f;
   desc.camera = camera;

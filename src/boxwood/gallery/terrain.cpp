@@ -168,7 +168,7 @@ SceneDesc make_terrain(std::uint64_t cells) {
     }
   desc.add(Geometry{std::move(mesh), ground_id, std::move(materials), "terrain"});
 
-  desc.camera = look_at_camera({5.5f, 5.2f, 15.5f}, {0, 0.5f, 0}, 32, 1280, 720);
+  desc.camera = look_at_camera({6.5f, 6.0f, 17.5f}, {-0.6f, 0.3f, 0}, 32, 1280, 720);
   desc.sky = clear_sky({-0.8f, 0.5f, 0.25f});
   desc.sky->ground = desc.sky->horizon;  // haze where the sea ends
   return desc;
