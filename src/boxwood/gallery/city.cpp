@@ -87,7 +87,7 @@ SceneDesc make_city(std::uint64_t towers) {
 
   // From above a corner of the town, never farther off than a town of 60 lots asks for.
   const float reach = min(width, 75);
-  desc.camera = look_at_camera({0.75f * reach, 6 + 0.42f * reach, 1.1f * reach}, {0, 5, 0}, 26, 1280, 720);
+  desc.camera = look_at_camera({0.78f * reach, 4 + 0.26f * reach, 1.15f * reach}, {0, 8, 0}, 26, 1280, 720);
   desc.sky = clear_sky({-0.8f, 0.5f, 0.3f});
   desc.sky->ground = desc.sky->horizon * 0.8f;  // haze where the ground ends
   return desc;

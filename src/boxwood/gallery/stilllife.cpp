@@ -86,8 +86,8 @@ SceneDesc make_stilllife() {
 
   // Warm colors against the teal of the pot.
   const MaterialId paper = add_material(desc, "paper", Kind::matte, {0.70f, 0.57f, 0.45f});
-  const MaterialId teal = add_material(desc, "teal glaze", Kind::plastic, {0.015f, 0.21f, 0.23f}, 0.03f);
-  const MaterialId gold = add_material(desc, "gold", Kind::metal, {1.0f, 0.72f, 0.29f}, 0.06f);
+  const MaterialId teal = add_material(desc, "teal glaze", Kind::plastic, {0.018f, 0.26f, 0.27f}, 0.04f);
+  const MaterialId gold = add_material(desc, "gold", Kind::metal, {1.0f, 0.72f, 0.29f}, 0.12f);
   const MaterialId copper = add_material(desc, "brushed copper", Kind::metal, {0.93f, 0.51f, 0.37f}, 0.28f);
   const MaterialId chrome = add_material(desc, "chrome", Kind::mirror, {0.9f, 0.9f, 0.9f});
   const MaterialId glass = add_material(desc, "glass", Kind::glass, {1, 1, 1});
@@ -118,9 +118,9 @@ SceneDesc make_stilllife() {
   add_sphere(desc, "amber sphere", 0.15f, 3.2f, 0.36f, amber);
   add_sphere(desc, "ivory sphere", -2.75f, 3.0f, 0.32f, ivory);
   add_sphere(desc, "mustard sphere", 2.9f, 3.3f, 0.27f, mustard);
-  add_sphere(desc, "plum sphere", 5.6f, -0.2f, 0.75f, plum);
+  add_sphere(desc, "plum sphere", 5.3f, -0.4f, 0.75f, plum);
 
-  add_lamp(desc, "soft lamp", {-8.5f, 8.5f, 5}, {0, 0.8f, 0}, 2.0f, 2.0f, {36, 32.5f, 28});
+  add_lamp(desc, "soft lamp", {-8.5f, 8.5f, 5}, {0, 0.8f, 0}, 2.6f, 2.6f, {22.5f, 20.3f, 17.5f});
   add_lamp(desc, "edge lamp", {9, 6, -3}, {0, 1.2f, 0}, 0.8f, 2.4f, {7.5f, 8.2f, 9.6f});
 
   Sky sky;
@@ -129,7 +129,7 @@ SceneDesc make_stilllife() {
   sky.ground = {0.10f, 0.09f, 0.08f};
   desc.sky = sky;
 
-  Camera camera = look_at_camera({1.0f, 5.4f, 14.0f}, {0.1f, 1.12f, 0}, 25.5f, 960, 540);
+  Camera camera = look_at_camera({1.0f, 5.4f, 14.0f}, {0.1f, 1.12f, 0}, 26.5f, 960, 540);
   camera.lens_radius = 0.07f;
   camera.focus_distance = 13.2f;
   desc.camera = camera;
