@@ -170,7 +170,7 @@ SceneDesc make_terrain(std::uint64_t cells) {
 
   desc.camera = look_at_camera({6.5f, 6.0f, 17.5f}, {-0.6f, 0.3f, 0}, 32, 1280, 720);
   desc.sky = clear_sky({-0.8f, 0.5f, 0.25f});
-  desc.sky->ground = desc.sky->horizon;  // haze where the sea ends
+  desc.sky->ground = {0.11f, 0.15f, 0.20f};  // the sea goes on beyond the square
   return desc;
 }
 
