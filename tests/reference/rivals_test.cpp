@@ -172,6 +172,21 @@ TEST(Rivals, DoNotListOverlappingShapesWithoutEnd) {
   }
 }
 
+TEST(ClassicBvh, IsTheTreeThatTheFlatOneIs) {
+  const std::vector<Triangle> shapes = test::triangles(test::triangle_soup(2000));
+  const std::vector<Box3> all = boxes(shapes);
+  const Bvh bvh = build(all, {.method = Method::longest_axis, .max_depth = 64, .leaf_size = 4});
+  ClassicBvh<Triangle> classic;
+  classic.build(shapes, 64, 4);
+  for (const Ray& ray : hard_rays(all, kRays)) {
+    RivalStatistics of_classic, of_flat;
+    (void)closest_hit(classic, std::span<const Triangle>(shapes), ray, of_classic);
+    (void)closest_hit(UnorderedBvh(bvh), std::span<const Triangle>(shapes), ray, of_flat);
+    ASSERT_EQ(of_classic.box_tests, of_flat.box_tests);
+    ASSERT_EQ(of_classic.shape_tests, of_flat.shape_tests);
+  }
+}
+
 TEST(ClassicBvh, ForgetsAnOldHitAndAnOldBuild) {
   const std::vector<Sphere> one{{{0, 0, 0}, 1}}, other{{{9, 0, 0}, 1}};
   ClassicBvh<Sphere> classic;
