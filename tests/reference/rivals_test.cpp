@@ -157,6 +157,33 @@ TEST(RivalStatistics, OnlySpaceSplittingRepeatsTests) {
   EXPECT_GT(repeats(UniformGrid(all)), 0u);
 }
 
+// No rival may agree by testing everything.
+TEST(Rivals, TestFewShapes) {
+  const std::vector<Triangle> shapes = test::triangles(test::icosphere(5));
+  const std::vector<Box3> all = boxes(shapes);
+  std::vector<Ray> rays;
+  Random random(4);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 from = random.direction() * 3;
+    rays.push_back({from, 0, random.in_box(splat(-1), splat(1)) - from});
+  }
+  const auto tests_per_ray = [&](const auto& structure) {
+    RivalStatistics statistics;
+    for (const Ray& ray : rays)
+      (void)closest_hit(structure, std::span<const Triangle>(shapes), ray, statistics);
+    return double(statistics.box_tests + statistics.shape_tests) / double(rays.size());
+  };
+  ClassicBvh<Triangle> classic;
+  classic.build(shapes, 64, 4);
+  const Bvh bvh = build(all, {.method = Method::longest_axis});
+  EXPECT_LT(tests_per_ray(classic), 200);
+  EXPECT_LT(tests_per_ray(UnorderedBvh(bvh)), 200);
+  EXPECT_LT(tests_per_ray(OrderedBvh(bvh)), tests_per_ray(UnorderedBvh(bvh)));
+  EXPECT_LT(tests_per_ray(KdTree(all)), 100);
+  EXPECT_LT(tests_per_ray(Octree(all)), 150);
+  EXPECT_LT(tests_per_ray(UniformGrid(all)), 150);
+}
+
 // Coincident shapes would fill every cell that they reach: the lists stay within their bound.
 TEST(Rivals, DoNotListOverlappingShapesWithoutEnd) {
   Random random(3);

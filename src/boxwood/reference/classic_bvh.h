@@ -127,7 +127,10 @@ class ClassicBvh {
   }
 
   /// M9. Met means anywhere in [t_min, t_max]: from inside too, but not behind the origin.
-  static bool meets(const PreparedRay& ray, const Box3& box) { return ray.bound(box) <= ray.t_max; }
+  static bool meets(const PreparedRay& ray, const Box3& box) {
+    const float entry = ray.bound(box);  // +inf for a box that is missed, and t_max may be +inf too
+    return entry < kInfinity && entry <= ray.t_max;
+  }
 
   // M10. The node comes by reference; a shared pointer by value counts up and down, atomically, at each call.
   // M11. One query, and in it the best hit so far, is passed down to every leaf. The pseudocode gave each

@@ -23,7 +23,8 @@ class UnorderedBvh {
   void walk(const PreparedRay& ray, Q& query, Statistics& statistics) const {
     if (bvh_->is_empty()) return;
     const auto meets = [&](std::uint32_t node_index) {
-      return ray.bound(bvh_->nodes[node_index].box) <= ray.t_max;
+      const float entry = ray.bound(bvh_->nodes[node_index].box);  // +inf for a box that is missed
+      return entry < kInfinity && entry <= ray.t_max;
     };
     std::uint32_t stack[kMaxDepth + 2];
     int waiting = 0;
