@@ -80,7 +80,7 @@ SceneDesc make_city(std::uint64_t towers) {
 
   Material asphalt;
   asphalt.name = "asphalt";
-  asphalt.color = {0.22f, 0.21f, 0.20f};
+  asphalt.color = {0.27f, 0.26f, 0.25f};
   const float edge = 4 * width + 400;
   desc.add(std::vector<Quad>{{{-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}, {-edge, 0, -edge}}},
            desc.add(std::move(asphalt)));
@@ -88,7 +88,7 @@ SceneDesc make_city(std::uint64_t towers) {
   // From above a corner of the town, never farther off than a town of 60 lots asks for.
   const float reach = min(width, 75);
   desc.camera = look_at_camera({0.78f * reach, 4 + 0.26f * reach, 1.15f * reach}, {0, 8, 0}, 26, 1280, 720);
-  desc.sky = clear_sky({-0.8f, 0.5f, 0.3f});
+  desc.sky = clear_sky({-0.75f, 0.62f, 0.75f});
   desc.sky->ground = desc.sky->horizon * 0.8f;  // haze where the ground ends
   return desc;
 }

@@ -24,6 +24,7 @@ float heavy_tail(Random& random, double smallest, float largest) {
 void frame_cube(SceneDesc& desc) {
   desc.camera = look_at_camera({2.3f, 1.7f, 3.9f}, {0, -0.03f, 0}, 33, 960, 720);
   desc.sky = clear_sky({0.6f, 1, 0.45f});
+  desc.sky->ground = {0.40f, 0.44f, 0.50f};  // what most of the picture is seen against
 }
 
 }  // namespace

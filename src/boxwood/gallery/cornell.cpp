@@ -40,7 +40,7 @@ SceneDesc make_cornell() {
   const MaterialId white = add_paint(desc, "white", {0.725f, 0.710f, 0.680f});
   const MaterialId red = add_paint(desc, "red", {0.630f, 0.065f, 0.050f});
   const MaterialId green = add_paint(desc, "green", {0.140f, 0.450f, 0.091f});
-  const MaterialId lamp = add_paint(desc, "lamp", {0.78f, 0.78f, 0.78f}, {18.4f, 13.0f, 6.8f});
+  const MaterialId lamp = add_paint(desc, "lamp", {0.78f, 0.78f, 0.78f}, {29, 24, 17});
 
   // The room. Seen by the camera the red wall, at large x, is on the left.
   add_quads(desc, "floor, ceiling, back",

@@ -87,7 +87,7 @@ SceneDesc make_stilllife() {
   // Warm colors against the teal of the pot.
   const MaterialId paper = add_material(desc, "paper", Kind::matte, {0.70f, 0.57f, 0.45f});
   const MaterialId teal = add_material(desc, "teal glaze", Kind::plastic, {0.018f, 0.26f, 0.27f}, 0.04f);
-  const MaterialId gold = add_material(desc, "gold", Kind::metal, {1.0f, 0.72f, 0.29f}, 0.12f);
+  const MaterialId gold = add_material(desc, "gold", Kind::metal, {1.0f, 0.72f, 0.29f}, 0.16f);
   const MaterialId copper = add_material(desc, "brushed copper", Kind::metal, {0.93f, 0.51f, 0.37f}, 0.28f);
   const MaterialId chrome = add_material(desc, "chrome", Kind::mirror, {0.9f, 0.9f, 0.9f});
   const MaterialId glass = add_material(desc, "glass", Kind::glass, {1, 1, 1});

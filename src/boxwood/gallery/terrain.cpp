@@ -168,9 +168,9 @@ SceneDesc make_terrain(std::uint64_t cells) {
     }
   desc.add(Geometry{std::move(mesh), ground_id, std::move(materials), "terrain"});
 
-  desc.camera = look_at_camera({6.5f, 6.0f, 17.5f}, {-0.6f, 0.3f, 0}, 32, 1280, 720);
+  desc.camera = look_at_camera({6.0f, 6.0f, 16.5f}, {-0.35f, 0.25f, 0}, 31.5f, 1280, 720);
   desc.sky = clear_sky({-0.8f, 0.5f, 0.25f});
-  desc.sky->ground = {0.11f, 0.15f, 0.20f};  // the sea goes on beyond the square
+  desc.sky->ground = {0.085f, 0.12f, 0.165f};  // the sea goes on beyond the square
   return desc;
 }
 
