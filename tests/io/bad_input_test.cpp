@@ -100,10 +100,12 @@ TEST_F(BadInput, StlBytes) {
 class BadPicture : public BadInput {
  protected:
   void expect_picture_survives(const std::string& good, const std::string& target) const {
+    testing::internal::CaptureStderr();
     expect_survives(good, target, 1000, [](const std::filesystem::path& file) {
       const Texture texture = read_texture(file);
       EXPECT_EQ(texture.texels.size(), std::size_t(texture.width) * texture.height);
     });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "a codec prints";
   }
   void expect_written_picture_survives(const std::string& extension) const {
     Image image(17, 9, 3);
@@ -112,6 +114,39 @@ class BadPicture : public BadInput {
     expect_picture_survives(read(path("good" + extension)), "a" + extension);
   }
 };
+
+// 9 x 7 grey pixels of noise.
+constexpr std::string_view kJpegInHex =
+    "ffd8ffe000104a46494600010100000100010000ffdb004300140e0f120f0d14121012171514181e32211e1c1c1e3d2c"
+    "2e243249404c4b47404645505a736250556d5645466488656d777b8182814e608d978c7d96737e817cffc0000b080007"
+    "000901011100ffc4001f0000010501010101010100000000000000000102030405060708090a0bffc400b51000020103"
+    "03020403050504040000017d01020300041105122131410613516107227114328191a1082342b1c11552d1f024336272"
+    "82090a161718191a25262728292a3435363738393a434445464748494a535455565758595a636465666768696a737475"
+    "767778797a838485868788898a92939495969798999aa2a3a4a5a6a7a8a9aab2b3b4b5b6b7b8b9bac2c3c4c5c6c7c8c9"
+    "cad2d3d4d5d6d7d8d9dae1e2e3e4e5e6e7e8e9eaf1f2f3f4f5f6f7f8f9faffda0008010100003f0044fde39cb876ef8e"
+    "bdb06a4f35ff00e79a7e47fc6bffd9";
+
+std::string from_hex(std::string_view hex) {
+  const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    bytes += static_cast<char>(digit(hex[i]) << 4 | digit(hex[i + 1]));
+  return bytes;
+}
+
+TEST_F(BadPicture, Jpeg) {
+  expect_picture_survives(from_hex(kJpegInHex), "a.jpg");
+}
+
+TEST_F(BadPicture, Tga) {
+  // 3 x 2 pixels with run lengths, as most painters write them.
+  std::string tga(18, '\0');
+  tga[2] = 10;
+  tga[12] = 3;
+  tga[14] = 2;
+  tga[16] = 24;
+  expect_picture_survives(tga + "\x82" + "abc" + "\x02" + "abcdefghi", "a.tga");
+}
 
 TEST_F(BadPicture, Png) {
   expect_written_picture_survives(".png");

@@ -159,6 +159,21 @@ TEST_F(Pictures, SaysWhenAFolderTakesNoFiles) {
                   "/proc/self/a.png: cannot be written: ");
 }
 
+TEST_F(Pictures, BelievesNoSizeThatTheFileHasNoBytesFor) {
+  // 60000 x 60000 pixels, with the check sum that belongs to it.
+  const std::string png(
+      "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\xea\x60\0\0\xea\x60\x08\x02\0\0\0\x0f\xb0\xe2\x15", 33);
+  EXPECT_CONTAINS(message_of<FileError>([&] { read_texture(write("a.png", png)); }),
+                  "tells of 60000 x 60000 pixels");
+  write_image(path("a.exr"), gradient(4, 4, 3));
+  std::string exr = read(path("a.exr"));
+  const std::size_t window = exr.find("dataWindow");
+  ASSERT_NE(window, std::string::npos);
+  exr.replace(window + 21 + 8, 8, "\x5f\xea\0\0\x5f\xea\0\0", 8);
+  EXPECT_CONTAINS(message_of<FileError>([&] { read_texture(write("a.exr", exr)); }),
+                  "tells of 60000 x 60000 pixels");
+}
+
 TEST_F(Pictures, ReadsTexturesFromMemory) {
   write_image(path("a.png"), gradient(8, 3, 3));
   const Texture from_file = read_texture(path("a.png"));
@@ -204,7 +219,12 @@ TEST_F(Pictures, SaysWhyAPictureCannotBeRead) {
   EXPECT_CONTAINS(says(folder_), "is a folder");
   EXPECT_CONTAINS(says(write("empty.png", "")), "empty.png: the file is empty");
   EXPECT_CONTAINS(says(write("noise.png", "these are no pixels")),
-                  "noise.png: is not a picture that can be read");
+                  "noise.png:byte 0: is not a picture that can be read");
+  EXPECT_CONTAINS(says(write("noise.jpg", "these are no pixels")),
+                  "noise.jpg: is not a picture that can be read");
+  EXPECT_CONTAINS(says(write("noise.xyz", "these are no pixels")),
+                  "noise.xyz: is not a picture that can be read");
+  EXPECT_CONTAINS(says(write("noise", "these are no pixels")), "noise: is not a picture that can be read");
   EXPECT_CONTAINS(message_of<FileError>([] { read_texture(std::span<const std::byte>(), "image 3"); }),
                   "image 3: ");
 }

@@ -8,15 +8,10 @@
 #include <OpenImageIO/imageio.h>
 
 #include "boxwood/io/file_bytes.h"
+#include "boxwood/io/picture_check.h"
 
 namespace boxwood::io {
 namespace {
-
-// Larger pictures are taken for damage, and so are those that tell of more numbers than any encoding packs
-// into the bytes of their file: no header gets memory that the file does not pay for. (A bitmap of one value
-// in a PNG takes a byte for 8256 pixels, a flat picture in an EXR about as little.)
-constexpr int kMostPixelsAcross = 1 << 16, kMostChannels = 64;
-constexpr std::uint64_t kMostValues = 1u << 29, kMostValuesPerByte = 1u << 14;
 
 // OpenImageIO and OpenEXR shall work on the calling thread alone: no thread starts that nobody asked for.
 // (Setting the library's own "threads" would do the contrary: it starts a pool in order to shrink it.)
@@ -61,18 +56,6 @@ void check_shape(const std::string& path, const Image& image) {
                         std::to_string(image.pixels.size()) + " numbers cannot be written");
 }
 
-// Refuses sizes that cannot be true of a file with so many bytes.
-void check_size(const std::string& name, std::int64_t width, std::int64_t height, std::int64_t channels,
-                std::size_t file_bytes) {
-  const bool is_possible = width > 0 && height > 0 && channels > 0 && width <= kMostPixelsAcross &&
-                           height <= kMostPixelsAcross && channels <= kMostChannels;
-  if (!is_possible ||
-      std::uint64_t(width * height * channels) > std::min(kMostValues, kMostValuesPerByte * file_bytes))
-    throw FileError(name, "",
-                    "the picture tells of " + std::to_string(width) + " x " + std::to_string(height) +
-                        " pixels with " + std::to_string(channels) + " channels, which cannot be in it");
-}
-
 // The format that OpenImageIO shall try: by the first bytes, since a name may be missing or lie, else by the
 // name's ending.
 std::string format_of(std::string_view bytes, const std::string& name) {
@@ -88,44 +71,28 @@ std::string format_of(std::string_view bytes, const std::string& name) {
   return extension.empty() ? "" : extension.substr(1);
 }
 
-// OpenEXR makes room for what the header tells of as soon as it opens a file, before anybody can ask for the
-// size; look at the header's windows (box2i attributes: four little-endian integers) first.
-void check_exr_windows(std::string_view bytes, const std::string& name) {
-  constexpr std::string_view kWindow("dataWindow\0box2i\0\x10\0\0\0", 21);
-  for (std::size_t at = bytes.find(kWindow); at != std::string_view::npos; at = bytes.find(kWindow, at + 1)) {
-    if (bytes.size() - at < kWindow.size() + 16) return;
-    std::int64_t corner[4];
-    for (int i = 0; i < 4; ++i) {
-      std::uint32_t bits = 0;
-      for (int byte = 3; byte >= 0; --byte)
-        bits = bits << 8 | static_cast<unsigned char>(bytes[at + kWindow.size() + 4 * i + byte]);
-      corner[i] = static_cast<std::int32_t>(bits);
-    }
-    check_size(name, corner[2] - corner[0] + 1, corner[3] - corner[1] + 1, 1, bytes.size());
-  }
-}
-
 /// A picture file in memory that OpenImageIO has opened.
 class PictureFile {
  public:
   PictureFile(std::string_view bytes, const std::string& name)
-      : name_(name), memory_(const_cast<char*>(bytes.data()), bytes.size()) {
+      : name_(name),
+        format_(format_of(bytes, name)),
+        bytes_(checked(bytes)),
+        memory_(bytes_.data(), bytes_.size()) {
     // Keep colors as the file has them, not multiplied by alpha.
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);
-    const std::string format = format_of(bytes, name);
-    if (format == "exr") check_exr_windows(bytes, name);
-    input_ = OIIO::ImageInput::create(format.empty() ? "none" : format);
+    input_ = OIIO::ImageInput::create(format_.empty() ? "none" : format_);
     if (!input_)
       throw FileError(name, "", "is not a picture that can be read: " + one_line(OIIO::geterror()));
     keep_to_this_thread(*input_);
     OIIO::ImageSpec found;
     if (!input_->supports("ioproxy") || !input_->set_ioproxy(&memory_) ||
-        !input_->open(format, found, wishes))
+        !input_->open(format_, found, wishes))
       throw FileError(name, "", "is not a picture that can be read: " + one_line(input_->geterror()));
 
     const OIIO::ImageSpec& spec = input_->spec();
-    check_size(name, spec.width, spec.height, spec.nchannels, bytes.size());
+    check_picture_size(name, spec.width, spec.height, spec.nchannels, bytes.size());
     if (spec.depth > 1) throw FileError(name, "", "is a volume, not a picture");
   }
 
@@ -144,7 +111,16 @@ class PictureFile {
   }
 
  private:
+  // The bytes that the codec shall see.
+  std::string checked(std::string_view bytes) const {
+    if (format_ == "png") return png_essentials(bytes, name_);
+    if (format_ == "exr") check_exr(bytes, name_);
+    return std::string(bytes);
+  }
+
   const std::string& name_;
+  const std::string format_;
+  std::string bytes_;
   OIIO::Filesystem::IOMemReader memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
 };
