@@ -27,17 +27,9 @@ class Binning {
   int bin(const Item& item, int axis) const {
     return std::min(bins_ - 1, int((item.half_center(axis) - lower_.v[axis]) * scale_.v[axis]));
   }
-  struct Bins {
-    int axis[3];
-  };
-  Bins bins_of(const Item& item) const {
-    const Lanes center = item.half_center();
-    Lanes place;
-    for (int k = 0; k < 4; ++k) place.v[k] = (center.v[k] - lower_.v[k]) * scale_.v[k];
-    Bins out;
-    for (int k = 0; k < 3; ++k) out.axis[k] = std::min(bins_ - 1, int(place.v[k]));
-    return out;
-  }
+  /// The same for all axes at once.
+  Lanes places(const Reach& reach) const { return (half_center(reach) - lower_) * scale_; }
+  int bin(Lanes places, int axis) const { return std::min(bins_ - 1, int(places.v[axis])); }
 
  private:
   int bins_;
@@ -59,10 +51,11 @@ struct Histogram {
   void add(const Binning& binning, std::span<const Item> items) {
     for (const Item& item : items) {
       const Reach box = item.reach();
-      const Binning::Bins bins = binning.bins_of(item);
+      const Lanes places = binning.places(box);
       for (int k = 0; k < 3; ++k) {
-        reach[k][bins.axis[k]].extend(box);
-        ++count[k][bins.axis[k]];
+        const int bin = binning.bin(places, k);
+        reach[k][bin].extend(box);
+        ++count[k][bin];
       }
     }
   }
