@@ -11,15 +11,16 @@ namespace {
 class Binning {
  public:
   Binning(const Reach& half_centers, int bins) : bins_(bins) {
+    float scale[3];
     for (int k = 0; k < 3; ++k) {
       // Where the scale overflows, or there is nothing to tell apart, everything falls into bin 0.
       const float extent = half_centers.upper.v[k] - half_centers.lower(k);
-      const float scale = float(bins) / extent;
-      is_useful_[k] = extent > 0 && scale < 0x1p120f;
-      lower_.v[k] = half_centers.lower(k);
-      scale_.v[k] = is_useful_[k] ? scale : 0.0f;
+      scale[k] = float(bins) / extent;
+      is_useful_[k] = extent > 0 && scale[k] < 0x1p120f;
+      if (!is_useful_[k]) scale[k] = 0;
     }
-    lower_.v[3] = scale_.v[3] = 0;
+    lower_ = {Lanes::Register{half_centers.lower(0), half_centers.lower(1), half_centers.lower(2), 0}};
+    scale_ = {Lanes::Register{scale[0], scale[1], scale[2], 0}};
   }
   bool is_useful(int axis) const { return is_useful_[axis]; }
   int bins() const { return bins_; }

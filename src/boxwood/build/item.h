@@ -21,46 +21,32 @@ namespace boxwood {
 struct Lanes {
 #if defined(__GNUC__)
   using Register = float __attribute__((vector_size(16)));
+  using Bits = std::int32_t __attribute__((vector_size(16)));
   Register v;
-  friend Lanes max(Lanes a, Lanes b) {
-    return {a.v > b.v ? a.v : b.v};
-  }
-  friend Lanes operator+(Lanes a, Lanes b) {
-    return {a.v + b.v};
-  }
-  friend Lanes operator-(Lanes a, Lanes b) {
-    return {a.v - b.v};
-  }
-  friend Lanes operator*(Lanes a, Lanes b) {
-    return {a.v * b.v};
-  }
+
+  friend Lanes max(Lanes a, Lanes b) { return {a.v > b.v ? a.v : b.v}; }
+  friend Lanes operator-(Lanes a, Lanes b) { return {a.v - b.v}; }
+  friend Lanes operator*(Lanes a, Lanes b) { return {a.v * b.v}; }
+  Lanes with_fourth_zero() const { return {std::bit_cast<Register>(std::bit_cast<Bits>(v) & Bits{-1, -1, -1, 0})}; }
 #else
   struct alignas(16) Register {
     float f[4];
     float operator[](int k) const { return f[k]; }
-    float& operator[](int k) { return f[k]; }
   };
   Register v;
+
   template <class Op>
   static Lanes each(Op op) {
     return {Register{op(0), op(1), op(2), op(3)}};
   }
-  friend Lanes max(Lanes a, Lanes b) {
-    return each([&](int k) { return a.v[k] > b.v[k] ? a.v[k] : b.v[k]; });
-  }
-  friend Lanes operator+(Lanes a, Lanes b) {
-    return each([&](int k) { return a.v[k] + b.v[k]; });
-  }
-  friend Lanes operator-(Lanes a, Lanes b) {
-    return each([&](int k) { return a.v[k] - b.v[k]; });
-  }
-  friend Lanes operator*(Lanes a, Lanes b) {
-    return each([&](int k) { return a.v[k] * b.v[k]; });
-  }
+  // clang-format off
+  friend Lanes max(Lanes a, Lanes b) { return each([&](int k) { return a.v[k] > b.v[k] ? a.v[k] : b.v[k]; }); }
+  friend Lanes operator-(Lanes a, Lanes b) { return each([&](int k) { return a.v[k] - b.v[k]; }); }
+  friend Lanes operator*(Lanes a, Lanes b) { return each([&](int k) { return a.v[k] * b.v[k]; }); }
+  Lanes with_fourth_zero() const { return each([&](int k) { return k < 3 ? v[k] : 0.0f; }); }
+  // clang-format on
 #endif
-  static Lanes all(float f) {
-    return {Register{f, f, f, f}};
-  }
+  static Lanes all(float f) { return {Register{f, f, f, f}}; }
 };
 
 /// A box as (-lower, upper). Default: empty.
@@ -103,9 +89,8 @@ struct Item {
   Reach reach() const {
     // The number must not get into arithmetic: as a float it is denormal, and each operation on it costs 150
     // cycles.
-    Reach out = std::bit_cast<Reach>(*this);
-    out.minus_lower.v[3] = 0;
-    return out;
+    const Reach with_number = std::bit_cast<Reach>(*this);
+    return {with_number.minus_lower.with_fourth_zero(), with_number.upper};
   }
   /// *Half* of the center. Builders only compare centers, and the difference of two halves is finite for all
   /// boxes.
