@@ -17,15 +17,17 @@ class BinnedSahSplitter {
  public:
   static constexpr int kMaxBins = 64;
 
-  BinnedSahSplitter(std::vector<Item>& items, const BuildOptions& options);
+  BinnedSahSplitter(std::vector<Item>& items, const BuildOptions& options, Executor& executor);
   Step step(Range range, Plan plan);
   void write_leaf(Range range, std::span<PrimId> out) const;
 
  private:
   std::span<Item> items_;
+  std::vector<Item> scratch_;  // as long as items_, or empty where no range is large
   const std::uint32_t leaf_size_;
   const int max_bins_;
   const SahCost cost_;
+  Executor& executor_;
 };
 
 }  // namespace boxwood

@@ -48,7 +48,7 @@ Bvh build(std::span<const Box3> boxes, const BuildOptions& options) {
     case Method::longest_axis:
       return grow(LongestAxisSplitter(items.full, options), false);
     case Method::binned_sah:
-      return grow(BinnedSahSplitter(items.full, options), true);
+      return grow(BinnedSahSplitter(items.full, options, executor), true);
     case Method::sweep_sah:
       return grow(SweepSahSplitter(items.full, options, executor), true);
   }

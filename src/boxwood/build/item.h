@@ -24,10 +24,18 @@ struct Lanes {
   using Bits = std::int32_t __attribute__((vector_size(16)));
   Register v;
 
-  friend Lanes max(Lanes a, Lanes b) { return {a.v > b.v ? a.v : b.v}; }
-  friend Lanes operator-(Lanes a, Lanes b) { return {a.v - b.v}; }
-  friend Lanes operator*(Lanes a, Lanes b) { return {a.v * b.v}; }
-  Lanes with_fourth_zero() const { return {std::bit_cast<Register>(std::bit_cast<Bits>(v) & Bits{-1, -1, -1, 0})}; }
+  friend Lanes max(Lanes a, Lanes b) {
+    return {a.v > b.v ? a.v : b.v};
+  }
+  friend Lanes operator-(Lanes a, Lanes b) {
+    return {a.v - b.v};
+  }
+  friend Lanes operator*(Lanes a, Lanes b) {
+    return {a.v * b.v};
+  }
+  Lanes with_fourth_zero() const {
+    return {std::bit_cast<Register>(std::bit_cast<Bits>(v) & Bits{-1, -1, -1, 0})};
+  }
 #else
   struct alignas(16) Register {
     float f[4];
@@ -46,7 +54,9 @@ struct Lanes {
   Lanes with_fourth_zero() const { return each([&](int k) { return k < 3 ? v[k] : 0.0f; }); }
   // clang-format on
 #endif
-  static Lanes all(float f) { return {Register{f, f, f, f}}; }
+  static Lanes all(float f) {
+    return {Register{f, f, f, f}};
+  }
 };
 
 /// A box as (-lower, upper). Default: empty.
@@ -132,12 +142,6 @@ struct Extents {
     half_centers.extend(other.half_centers);
   }
 };
-inline Extents extents(std::span<const Item> items) {
-  Extents out;
-  for (const Item& item : items) out.extend(item);
-  return out;
-}
-
 /// The axis along which `reach` is longest; halves are compared, so that nothing overflows.
 inline int longest_axis(const Reach& reach) {
   const auto half_extent = [&](int k) { return 0.5f * reach.upper.v[k] + 0.5f * reach.minus_lower.v[k]; };
