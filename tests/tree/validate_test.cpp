@@ -161,8 +161,8 @@ TEST(Validate, SurvivesGarbage) {
       std::memcpy(bytes + 4 * (all ? k : random.below(words)), &value, 4);
     }
     if (random.below(4) == 0) s.bvh.prim_ids[random.below(4)] = PrimId(random.next());
-    if (all) EXPECT_NE(s.verdict(), "");
-    (void)s.verdict();
+    const std::string verdict = s.verdict();
+    EXPECT_TRUE(!all || !verdict.empty());
   }
 }
 

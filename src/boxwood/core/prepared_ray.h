@@ -108,7 +108,8 @@ class PreparedRay {
       const float d = std::copysign(max(std::fabs(direction[k]), d_max * 0x1p-30f), direction[k]);
       const float r = 1.0f / d;
       backward_[k] = d < 0;
-      const float slack = std::fabs(r) * (12 * u * reach + 8 * u * std::fabs(origin[k]) + 0x1p-140f);
+      // The two tiny terms cover what underflows: positions before, and t after the multiplication.
+      const float slack = std::fabs(r) * (12 * u * reach + 8 * u * std::fabs(origin[k]) + 0x1p-140f) + 0x1p-140f;
       inverse_[k] = r;
       near_shift_[k] = -(origin[k] * r) - slack;
       far_shift_[k] = -(origin[k] * r) + slack;
