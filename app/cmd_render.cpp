@@ -64,12 +64,6 @@ std::string ending_of(const std::filesystem::path& path) {
   return ending;
 }
 
-BuildOptions build_options(const std::string& preset) {
-  return preset == "fast"   ? BuildOptions::fast()
-         : preset == "best" ? BuildOptions::best()
-                            : BuildOptions::balanced();
-}
-
 /// What the file can hold: EXR keeps the numbers as they are, the others show them.
 Image picture_for(const std::string& ending, const Image& image, render::Mode mode) {
   if (ending == ".exr") return image;

@@ -33,6 +33,12 @@ SceneDesc open_scene(const std::string& name_or_path, Executor& executor) {
   return io::load(name_or_path, &executor);
 }
 
+BuildOptions build_options(const std::string& preset) {
+  if (preset == "fast") return BuildOptions::fast();
+  if (preset == "best") return BuildOptions::best();
+  return BuildOptions::balanced();
+}
+
 void print_warnings(const SceneDesc& desc) {
   for (const std::string& warning : desc.warnings) fmt::print(stderr, "boxwood: warning: {}\n", warning);
 }

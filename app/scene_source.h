@@ -1,8 +1,9 @@
-// scene_source.h: where does the scene that a user names come from?
+// scene_source.h: where does the scene that a user names come from, and how is it built?
 #pragma once
 
 #include <string>
 
+#include "boxwood/build/options.h"
 #include "boxwood/core/parallel.h"
 #include "boxwood/scene/description.h"
 
@@ -12,6 +13,9 @@ namespace boxwood::app {
 /// else a file. Throws std::invalid_argument or FileError; for a file that is not there the message also
 /// lists the names.
 SceneDesc open_scene(const std::string& name_or_path, Executor& executor);
+
+/// The preset by its name, "fast", "balanced" or "best"; anything else is balanced.
+BuildOptions build_options(const std::string& preset);
 
 /// Prints each warning of the scene on stderr, a line each.
 void print_warnings(const SceneDesc& desc);

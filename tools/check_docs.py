@@ -7,6 +7,8 @@
    by the tests. In the rooms' own READMEs under src/ a snippet may go without a source.
 2. Every relative link and picture in every Markdown file points at a file, and its #anchor at a heading.
 3. Every heading of a page is unique, so that anchors are.
+4. Every `Suite.Test` that a page names in code marks is a test in tests/, and every `tests/...` path is there (`*` may stand
+   for a part of a name).
 
 Usage: check_docs.py [ROOT]. Prints file:line for each problem and exits with 1 when there is one.
 """
@@ -78,7 +80,27 @@ def anchor(heading):
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
-def check_page(path, root):
+def known_tests(root):
+    """Suite.Name of every GoogleTest in tests/."""
+    names = set()
+    for path in (root / "tests").rglob("*_test.cpp"):
+        for suite, name in re.findall(r"^\s*(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+),\s*(\w+)", path.read_text(), re.MULTILINE):
+            names.add(f"{suite}.{name}")
+    return names
+
+
+def check_tests(text, here, root, tests):
+    problems = []
+    for number, line in enumerate(text.splitlines(), 1):
+        for mark in re.findall(r"`([^`]+)`", line):
+            if re.fullmatch(r"[A-Z]\w+\.[A-Z]\w+", mark) and mark not in tests:
+                problems.append(f"{here}:{number}: there is no test {mark}")
+            if re.fullmatch(r"tests/\S+\.(cpp|h|py|cmake)", mark) and not list(root.glob(mark)):
+                problems.append(f"{here}:{number}: there is no {mark}")
+    return problems
+
+
+def check_page(path, root, tests):
     problems, counts = [], {"snippets": 0, "links": 0}
     here, text = path.relative_to(root), path.read_text(encoding="utf-8")
 
@@ -97,6 +119,7 @@ def check_page(path, root):
     for name in sorted({name for name in names if names.count(name) > 1}):
         problems.append(f"{here}:1: two headings have the anchor #{name}")
 
+    problems += check_tests(text, here, root, tests)
     for match in LINK.finditer(without_code(text)):
         target = match.group(1) or match.group(2)
         line = without_code(text)[: match.start()].count("\n") + 1
@@ -116,8 +139,9 @@ def check_page(path, root):
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent).resolve()
     problems, count, total = [], 0, {"snippets": 0, "links": 0}
+    tests = known_tests(root)
     for path in pages(root):
-        found, counts = check_page(path, root)
+        found, counts = check_page(path, root, tests)
         problems += found
         count += 1
         for key in total:

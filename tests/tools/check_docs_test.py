@@ -77,6 +77,12 @@ class CheckDocs(unittest.TestCase):
     def test_a_dead_anchor_is_caught(self):
         self.assert_problem("# A\n\n[x](#b)\n", "no heading #b")
 
+    def test_a_test_that_is_gone_is_caught(self):
+        there = {"tests/core/box_test.cpp": "TEST(Box, IsEmpty) {}\n"}
+        self.assertEqual(run("`Box.IsEmpty` in `tests/core/box_*.cpp`\n", there)[0], 0)
+        self.assert_problem("`Box.IsFull`\n", "README.md:1: there is no test Box.IsFull", there)
+        self.assert_problem("\n`tests/core/bix_test.cpp`\n", "README.md:2: there is no tests/core/bix_test.cpp", there)
+
     def test_two_headings_of_one_name_are_caught(self):
         self.assert_problem("# A\n\n# A\n", "two headings")
 
