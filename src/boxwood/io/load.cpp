@@ -18,12 +18,8 @@ struct Format {
 
 // Every format that load() reads, by the ending of the file's name.
 constexpr Format kFormats[] = {
-    {".obj", load_obj},
-    {".ply", load_ply},
-    {".stl", load_stl},
-    {".gltf", load_gltf},
-    {".glb", load_gltf},
-    {".pbrt", load_pbrt},
+    {".obj", load_obj},   {".ply", load_ply},  {".stl", load_stl},
+    {".gltf", load_gltf}, {".glb", load_gltf}, {".pbrt", load_pbrt},
 };
 
 const Format* find_format(const std::filesystem::path& path) {

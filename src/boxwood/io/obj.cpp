@@ -6,6 +6,7 @@
 //
 // A corner of a face names a position, a texture coordinate and a normal apart; a vertex of ours is one such
 // triple. Each `o` and `g` begins a geometry, in which equal triples are one vertex.
+
 #include <array>
 #include <map>
 #include <sstream>

@@ -5,6 +5,7 @@
 // position, normal or texture coordinate, nor the corners of a face or a triangle strip, is read over. A
 // count is believed only as far as the file has bytes for it, so that no header can ask for memory that the
 // file does not pay for.
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,123 +16,14 @@
 
 #include "boxwood/io/file_bytes.h"
 #include "boxwood/io/formats.h"
+#include "boxwood/io/ply_header.h"
 #include "boxwood/io/polygon.h"
 #include "boxwood/io/text_scanner.h"
 
 namespace boxwood::io {
 namespace {
 
-enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-enum class Encoding { ascii, little_endian, big_endian };
-
-constexpr std::size_t size_of(Type type) {
-  constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<int>(type)];
-}
-
-struct Property {
-  std::string name;
-  Type type = Type::float32;
-  std::optional<Type> count_type;  ///< Given for lists: the type of their length.
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-
-  std::optional<std::size_t> find(std::initializer_list<const char*> names) const {
-    for (std::size_t i = 0; i < properties.size(); ++i)
-      for (const char* wanted : names)
-        if (properties[i].name == wanted) return i;
-    return std::nullopt;
-  }
-};
-
-struct Header {
-  Encoding encoding = Encoding::ascii;
-  std::vector<Element> elements;
-  std::size_t size_bytes = 0, lines = 0;
-};
-
-std::optional<Type> to_type(std::string_view word) {
-  constexpr struct {
-    const char* name;
-    Type type;
-  } kNames[] = {{"char", Type::int8},      {"int8", Type::int8},       {"uchar", Type::uint8},
-                {"uint8", Type::uint8},    {"short", Type::int16},     {"int16", Type::int16},
-                {"ushort", Type::uint16},  {"uint16", Type::uint16},   {"int", Type::int32},
-                {"int32", Type::int32},    {"uint", Type::uint32},     {"uint32", Type::uint32},
-                {"float", Type::float32},  {"float32", Type::float32}, {"double", Type::float64},
-                {"float64", Type::float64}};
-  for (const auto& [name, type] : kNames)
-    if (word == name) return type;
-  return std::nullopt;
-}
-
-Type read_type(TextScanner& scanner) {
-  const std::string_view word = scanner.word_on_line();
-  const std::optional<Type> type = to_type(word);
-  if (!type) scanner.fail("a property has type " + in_quotes(word) + ", which PLY does not know");
-  return *type;
-}
-
-Header read_header(std::string_view bytes, const std::string& path) {
-  TextScanner scanner(bytes, path);
-  if (scanner.word_on_line() != "ply") scanner.fail("does not begin with 'ply'");
-  Header header;
-  bool has_format = false;
-  for (;;) {
-    if (!scanner.next_line()) scanner.fail("the header has no 'end_header'");
-    const std::string_view keyword = scanner.word_on_line();
-    if (keyword == "end_header") break;
-    if (keyword == "format") {
-      const std::string_view encoding = scanner.word_on_line();
-      if (encoding == "ascii")
-        header.encoding = Encoding::ascii;
-      else if (encoding == "binary_little_endian")
-        header.encoding = Encoding::little_endian;
-      else if (encoding == "binary_big_endian")
-        header.encoding = Encoding::big_endian;
-      else
-        scanner.fail("format " + in_quotes(encoding) +
-                     " is not one of ascii, binary_little_endian, binary_big_endian");
-      has_format = true;
-    } else if (keyword == "element") {
-      Element element;
-      element.name = scanner.word_on_line();
-      const std::string_view word = scanner.word_on_line();
-      std::int64_t count;
-      if (!parse_int(word, count) || count < 0)
-        scanner.fail("element " + in_quotes(element.name) + " has count " + in_quotes(word) +
-                     ", expected a whole number");
-      element.count = static_cast<std::uint64_t>(count);
-      header.elements.push_back(std::move(element));
-    } else if (keyword == "property") {
-      if (header.elements.empty()) scanner.fail("a property comes before any element");
-      Property property;
-      const std::string_view word = scanner.word_on_line();
-      if (word == "list") {
-        property.count_type = read_type(scanner);
-        if (*property.count_type >= Type::float32) scanner.fail("the length of a list is not a whole number");
-        property.type = read_type(scanner);
-      } else if (const std::optional<Type> type = to_type(word)) {
-        property.type = *type;
-      } else {
-        scanner.fail("a property has type " + in_quotes(word) + ", which PLY does not know");
-      }
-      property.name = scanner.word_on_line();
-      header.elements.back().properties.push_back(std::move(property));
-    } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-      scanner.fail(in_quotes(keyword) + " does not belong in the header");
-    }
-  }
-  if (!has_format) scanner.fail("the header has no 'format'");
-  scanner.next_line();
-  header.size_bytes = scanner.offset();
-  header.lines = scanner.line();
-  return header;
-}
+using ply::Element, ply::Encoding, ply::Header, ply::Property, ply::Type;
 
 /// Hands out the values of a text body one by one. Every value takes at least a digit and a blank.
 class TextBody {
@@ -169,7 +61,7 @@ class BinaryBody {
   BinaryBody(std::string_view bytes, const Header& header, const std::string& path)
       : bytes_(bytes), path_(path), at_(header.size_bytes) {}
   double next(Type type) {
-    const std::size_t size = size_of(type);
+    const std::size_t size = ply::size_of(type);
     if (size > bytes_.size() - at_) fail("the file ends too early");
     char value[8];
     for (std::size_t i = 0; i < size; ++i) value[kSwap ? size - 1 - i : i] = bytes_[at_ + i];
@@ -195,8 +87,8 @@ class BinaryBody {
     return 0;
   }
   void skip(Type type, std::uint64_t count) {
-    if (count > room(size_of(type))) fail("the file ends too early");
-    at_ += count * size_of(type);
+    if (count > room(ply::size_of(type))) fail("the file ends too early");
+    at_ += count * ply::size_of(type);
   }
   std::uint64_t room(std::size_t size) const { return (bytes_.size() - at_) / size; }
   [[noreturn]] void fail(const std::string& message) const {
@@ -244,7 +136,7 @@ class MeshReader {
   void check_count(const Element& element) const {
     std::size_t bytes = 0;
     for (const Property& property : element.properties)
-      bytes += size_of(property.count_type.value_or(property.type));
+      bytes += ply::size_of(property.count_type.value_or(property.type));
     const std::size_t unit = std::is_same_v<Body, TextBody> ? 1 : bytes;
     const std::size_t per_element = std::is_same_v<Body, TextBody> ? element.properties.size() : 1;
     if (element.count > body_.room(unit) / per_element)
@@ -254,7 +146,8 @@ class MeshReader {
 
   std::uint64_t list_length(const Property& property, const Element& element, std::uint64_t i) {
     const double length = body_.next(*property.count_type);
-    const bool is_possible = length >= 0 && length <= static_cast<double>(body_.room(size_of(property.type)));
+    const bool is_possible =
+        length >= 0 && length <= static_cast<double>(body_.room(ply::size_of(property.type)));
     if (!is_possible || length != std::floor(length))
       body_.fail(element.name + " " + std::to_string(i) + " has a list of " + show(length) +
                  " values, expected a whole number for which the file is long enough");
@@ -391,7 +284,7 @@ class MeshReader {
 
 TriangleMesh read_ply_mesh(const std::filesystem::path& path) {
   const std::string name = path.string(), bytes = read_file(path);
-  const Header header = read_header(bytes, name);
+  const Header header = ply::read_header(bytes, name);
   constexpr bool kIsBigHere = std::endian::native == std::endian::big;
   TriangleMesh mesh;
   if (header.encoding == Encoding::ascii)

@@ -3,6 +3,7 @@
 // 3D Systems' format (1987) lists each triangle with corners of its own, as text or as 50 bytes after a
 // header of 84. Corners in exactly the same place become one vertex here, so that what was closed in the file
 // is closed in memory. The file's facet normals are not used: the order of the corners says the same.
+
 #include <array>
 #include <bit>
 #include <cstring>
