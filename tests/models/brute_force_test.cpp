@@ -51,20 +51,23 @@ std::vector<Hit> search_without_trees(const Scene& scene, const std::vector<Ray>
                                inside[i].is_empty() ? -kInfinity : kInfinity, object_box);
       }
 
-      constexpr std::size_t kTile = 2048;
+      constexpr std::size_t kTile = 512;
+      std::vector<Triangle> tile;
       for (std::size_t first = 0; first < mesh.indices.size(); first += kTile) {
         const std::size_t last = std::min(first + kTile, mesh.indices.size());
+        tile.clear();
+        for (std::size_t k = first; k < last; ++k) tile.push_back(triangle_of(mesh, PrimId(k)));
         for (std::size_t i = 0; i < world.size(); ++i) {
           if (!world[i].is_valid() || !local[i].is_valid()) continue;
-          for (std::size_t k = first; k < last; ++k) {
-            found[i].label.instance_id = InstanceId(instance);
-            found[i].label.geometry_id = geometry;
-            found[i].label.primitive_id = PrimId(k);
+          found[i].label.instance_id = InstanceId(instance);
+          found[i].label.geometry_id = geometry;
+          for (std::size_t k = 0; k < tile.size(); ++k) {
+            found[i].label.primitive_id = PrimId(first + k);
             if (is_moved) {
               BoxGate<Found> gate(world[i], inside[i], found[i]);
-              intersect_gated(local[i], triangle_of(mesh, PrimId(k)), gate);
+              intersect_gated(local[i], tile[k], gate);
             } else {
-              intersect_gated(local[i], triangle_of(mesh, PrimId(k)), found[i]);
+              intersect_gated(local[i], tile[k], found[i]);
             }
           }
         }
