@@ -25,6 +25,15 @@ int complain(std::string message, int exit_code) {
   return exit_code;
 }
 
+/// The first argument when it names no command, for a message that says so; else empty.
+std::string unknown_command(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return "";
+  const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
+  for (const CLI::App* command : commands)
+    if (command->get_name() == argv[1]) return "";
+  return argv[1];
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -43,6 +52,9 @@ int main(int argc, char** argv) {
   boxwood::app::add_render(program);
   boxwood::app::add_info(program);
   boxwood::app::add_ladder(program);
+
+  if (const std::string name = unknown_command(program, argc, argv); !name.empty())
+    return complain("there is no command '" + name + "' (see boxwood --help)", kWrongUsage);
 
   try {
     program.parse(argc, argv);

@@ -71,16 +71,16 @@ class DepthIntegrator final : public Integrator {
   const Scene& scene_;
 };
 
-/// The share of the cosine-weighted hemisphere that is open up to a fifth of the scene's diagonal. White
+/// The share of the cosine-weighted hemisphere that is open up to a third of the scene's diagonal. Black
 /// where nothing is hit.
 class OcclusionIntegrator final : public Integrator {
  public:
   explicit OcclusionIntegrator(const Scene& scene)
-      : scene_(scene), reach_(0.2f * length(scene.bounds().is_empty() ? Vec3{} : scene.bounds().extent())) {}
+      : scene_(scene), reach_(0.33f * length(scene.bounds().is_empty() ? Vec3{} : scene.bounds().extent())) {}
   int channels() const override { return 1; }
   bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, std::uint64_t& rays) const override {
     ++rays;
-    out[0] = 1;
+    out[0] = 0;
     const Hit hit = scene_.closest_hit(ray);
     if (!hit) return true;
 
@@ -153,6 +153,12 @@ Image depth_as_grey(const Image& depth) {
     const float share = farthest > nearest ? (d - nearest) / (farthest - nearest) : 0;
     d = linear_from_srgb(1 - 0.88f * share);
   }
+  return grey;
+}
+
+Image occlusion_as_grey(const Image& occlusion) {
+  Image grey = occlusion;
+  for (float& share : grey.pixels) share = linear_from_srgb(share);
   return grey;
 }
 

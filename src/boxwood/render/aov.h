@@ -14,6 +14,9 @@ std::unique_ptr<Integrator> make_aov(const Scene& scene, Mode mode);
 /// channel.
 Image depth_as_grey(const Image& depth);
 
+/// Greys in which half open looks half as light.
+Image occlusion_as_grey(const Image& occlusion);
+
 /// Each component from [-1, 1] to the sRGB code in [0, 1] that it is usually shown as; decoded, as Image is
 /// linear.
 Image normal_as_color(const Image& normal);

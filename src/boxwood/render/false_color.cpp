@@ -84,9 +84,9 @@ Image cost_as_color(const Image& cost) {
   }
   if (tests.empty()) return Image(cost.width, cost.height, 3);
 
-  // A few pixels that cost far more than all others must not make everything else black.
+  // Silhouettes cost far more than all else, and must not make everything else black.
   std::vector<float> ranked = tests;
-  const auto almost_last = ranked.begin() + static_cast<std::ptrdiff_t>((ranked.size() - 1) * 0.999);
+  const auto almost_last = ranked.begin() + static_cast<std::ptrdiff_t>((ranked.size() - 1) * 0.99);
   std::nth_element(ranked.begin(), almost_last, ranked.end());
   const int top_of_scale = round_up_nicely(*almost_last);
 

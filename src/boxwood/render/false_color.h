@@ -7,7 +7,7 @@ namespace boxwood::render {
 
 /// The picture of a cost map (channels: boxes tested, shapes tested): their sum in colors from black over red
 /// to yellow, with a legend in the lower left corner where the picture has room for one. The scale ends at a
-/// round number that all but one in a thousand of the pixels stay below.
+/// round number that all but one in a hundred of the pixels stay below.
 Image cost_as_color(const Image& cost);
 
 }  // namespace boxwood::render

@@ -21,7 +21,7 @@ enum class Mode {
   color,      ///< The base color of what the pixel's ray hits, without any light.
   normal,     ///< The shading normal there, in world space, each component in [-1, 1].
   depth,      ///< The distance to it, in scene units; 0 where nothing is hit.
-  occlusion,  ///< How open it is to its surroundings: 1 open, 0 shut in.
+  occlusion,  ///< How open it is to its surroundings: 1 open, 0 shut in or nothing hit.
   cost,       ///< How many boxes and shapes the ray was tested against (two channels).
 };
 
@@ -57,8 +57,9 @@ void check(const RenderOptions& options);
 /// Throws std::invalid_argument as check() does, and when the scene's camera is not usable.
 RenderResult render_picture(const Scene& scene, const RenderOptions& options = {});
 
-/// What an eye can make sense of, with values in [0, 1] for an 8-bit file: normals as colors, depth as greys
-/// that are lighter when nearer, cost in false colors with a legend. Other modes as they are.
+/// What an eye can make sense of, with values in [0, 1] for an 8-bit file: normals as colors, depth and
+/// occlusion as greys, lighter when nearer and when open, cost in false colors with a legend. Others as they
+/// are.
 Image displayable(const Image& image, Mode mode);
 
 /// "path", "color" ...; and back. Throws std::invalid_argument for a name that is not one of them.

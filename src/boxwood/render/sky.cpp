@@ -8,8 +8,8 @@ Vec3 sky_radiance(const Sky& sky, Vec3 direction) {
   const auto smoothstep = [](float x) { return x * x * (3 - 2 * x); };
   const float height = dot(sky.up, direction);
   if (height > 0) return sky.horizon + (sky.zenith - sky.horizon) * smoothstep(min(height, 1.0f));
-  // The ground takes over within a few degrees, as it does where air is clear.
-  return sky.horizon + (sky.ground - sky.horizon) * smoothstep(min(-8 * height, 1.0f));
+  // The ground has taken over at 30 degrees below the horizon.
+  return sky.horizon + (sky.ground - sky.horizon) * smoothstep(min(-2 * height, 1.0f));
 }
 
 float Sun::solid_angle() const {
@@ -30,13 +30,13 @@ std::optional<Sun> sun_of(const Sky& sky) {
 
 Sky plain_sky(const Camera& camera) {
   Sky sky;
-  sky.zenith = {0.85f, 0.92f, 1.0f};
-  sky.horizon = {0.95f, 0.95f, 0.95f};
-  sky.ground = {0.32f, 0.30f, 0.28f};
+  sky.zenith = {0.40f, 0.44f, 0.50f};
+  sky.horizon = {0.52f, 0.53f, 0.55f};
+  sky.ground = {0.16f, 0.155f, 0.15f};
   const Affine3& m = camera.world_from_camera;
   sky.sun_direction = normalize(normalize(m.z) + normalize(m.y) * 0.9f - normalize(m.x) * 0.7f);
   sky.sun_angle_deg = 12;
-  sky.sun_radiance = splat(20);
+  sky.sun_radiance = {62, 59, 54};
   return sky;
 }
 
