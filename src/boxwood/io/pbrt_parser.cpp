@@ -67,6 +67,13 @@ constexpr std::array kGrammar = {
 // 2^n.
 constexpr std::size_t kMostNested = 64, kMostIncludes = 100000;
 
+const Grammar* find_grammar(const Token& token) {
+  if (token.kind != Token::Kind::word) return nullptr;
+  const auto* found = std::find_if(kGrammar.begin(), kGrammar.end(),
+                                   [&](const Grammar& entry) { return entry.name == token.text; });
+  return found != kGrammar.end() ? found : nullptr;
+}
+
 }  // namespace
 
 Parser::Parser(const std::filesystem::path& path) : folder_(path.parent_path()) {
@@ -123,9 +130,8 @@ bool Parser::next(Directive& directive) {
     }
 
     // The name decides what must follow.
-    const auto* grammar = std::find_if(kGrammar.begin(), kGrammar.end(),
-                                       [&](const Grammar& entry) { return entry.name == token.text; });
-    if (token.kind != Token::Kind::word || grammar == kGrammar.end())
+    const Grammar* grammar = find_grammar(token);
+    if (grammar == nullptr)
       fail(place, "found " + describe(token) + ", expected a directive such as Shape or AttributeBegin");
     directive = {std::string(token.text), place, {}, {}, {}};
     token = tokenizer.next();
@@ -135,7 +141,7 @@ bool Parser::next(Directive& directive) {
       const bool in_brackets = token.kind == Token::Kind::open;
       if (in_brackets) token = tokenizer.next();
       for (int i = 0; i < grammar->numbers; ++i, token = tokenizer.next()) {
-        if (token.kind != Token::Kind::word)
+        if (token.kind != Token::Kind::word || find_grammar(token) != nullptr)
           fail(tokenizer.place(token), directive.name + " has " + std::to_string(i) + " numbers and then " +
                                            describe(token) + ", expected " +
                                            std::to_string(grammar->numbers) + " numbers");
