@@ -4,6 +4,7 @@
 #include <map>
 
 #include "boxwood/core/random.h"
+#include "boxwood/io/image.h"
 #include "boxwood/io/load.h"
 #include "boxwood/scene/scene.h"
 #include "io/files.h"
@@ -221,17 +222,19 @@ TEST_F(Gltf, MaterialsBecomeOurs) {
 }
 
 TEST_F(Gltf, PicturesAreDecodedOnceAndMissingOnesAreWarnings) {
-  // A TGA of one green pixel, in a buffer view and in a data URI.
-  std::string tga(18, '\0');
-  tga[2] = 2, tga[12] = tga[14] = 1, tga[16] = 24;
-  tga += std::string("\0\xff\0", 3);
+  // A picture of one green pixel, in a buffer view and in a data URI.
+  Image green(1, 1);
+  green.pixels = {0, 1, 0};
+  write_image(path("green.png"), green);
+  const std::string png = read(path("green.png"));
   Source source;
-  source.buffer += tga;
+  source.buffer += png;
   source.parts["bufferViews"] = R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3},
-                                    {"buffer":0,"byteOffset":40,"byteLength":21}])";
+                                    {"buffer":0,"byteOffset":40,"byteLength":)" +
+                                std::to_string(png.size()) + "}]";
   source.parts["images"] =
       R"([{"bufferView":2,"mimeType":"image/png","name":"green"},{"uri":"data:image/png;base64,)" +
-      base64(tga) + R"("},{"uri":"gone.png"},{"bufferView":7,"mimeType":"image/png"}])";
+      base64(png) + R"("},{"uri":"gone.png"},{"bufferView":7,"mimeType":"image/png"}])";
   source.parts["textures"] = R"([{"source":0},{"source":1},{"source":2},{"source":0},{"source":3}])";
   std::string materials;
   for (int i = 0; i < 5; ++i)

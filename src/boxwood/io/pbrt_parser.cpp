@@ -65,7 +65,7 @@ constexpr std::array kGrammar = {
 
 // A scene of a film has thousands of includes; a file that includes another twice, which does the same, has
 // 2^n.
-constexpr std::size_t kMostNested = 64, kMostIncludes = 100000;
+constexpr std::size_t kMostNested = 64, kMostIncludes = 20000;
 
 const Grammar* find_grammar(const Token& token) {
   if (token.kind != Token::Kind::word) return nullptr;
@@ -83,7 +83,10 @@ Parser::Parser(const std::filesystem::path& path) : folder_(path.parent_path()) 
 void Parser::open(const std::filesystem::path& path) {
   std::string bytes = read_file(path);
   const std::string& name = paths_.emplace_back(path.string());
-  files_.push_back({path, std::make_unique<Tokenizer>(name, std::move(bytes)), {}});
+  std::error_code ignored;
+  files_.push_back({std::filesystem::weakly_canonical(path, ignored),
+                    std::make_unique<Tokenizer>(name, std::move(bytes)),
+                    {}});
   place_ = {&name, 1};
   files_.back().token = files_.back().tokenizer->next();
 }
@@ -101,8 +104,9 @@ void Parser::include(const Directive& directive) {
     const std::filesystem::path beside = files_.back().path.parent_path() / directive.strings[0];
     if (std::filesystem::exists(beside, ignored)) path = beside;
   }
+  const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, ignored);
   for (const OpenFile& file : files_)
-    if (std::filesystem::equivalent(file.path, path, ignored))
+    if (file.path == canonical)
       fail(directive.place, "includes " + in_quotes(directive.strings[0]) +
                                 ", which is being read already: the files include each other in a circle");
   if (files_.size() >= kMostNested)

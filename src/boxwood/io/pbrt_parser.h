@@ -43,7 +43,7 @@ class Parser {
   void include(const Directive& directive);
 
   struct OpenFile {
-    std::filesystem::path path;
+    std::filesystem::path path;  // canonical, to tell whether two names mean the same file
     std::unique_ptr<Tokenizer> tokenizer;
     Token token;  // read, not yet used
   };
