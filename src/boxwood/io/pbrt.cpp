@@ -27,10 +27,12 @@ class Interpreter {
 
   SceneDesc run() {
     Directive directive;
-    try {
-      while (parser_.next(directive)) interpret(directive);
-    } catch (const std::invalid_argument& error) {  // arithmetic that overflowed
-      fail(parser_.place(), error.what());
+    while (parser_.next(directive)) {
+      try {
+        interpret(directive);
+      } catch (const std::invalid_argument& error) {  // arithmetic that overflowed
+        fail(directive.place, error.what());
+      }
     }
     state_.expect_all_closed();
     if (desc_.camera) {

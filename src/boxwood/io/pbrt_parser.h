@@ -35,8 +35,6 @@ class Parser {
 
   /// The file that a name in the scene stands for: relative names start at the main file's folder.
   std::filesystem::path resolve(const std::string& name) const;
-  /// The last line that was read.
-  Place place() const { return place_; }
 
  private:
   void open(const std::filesystem::path& path);
@@ -51,7 +49,7 @@ class Parser {
   std::vector<OpenFile> files_;    // innermost last
   std::deque<std::string> paths_;  // of every file ever opened: Places point here
   std::size_t included_ = 0;
-  Place place_;
+  Place place_;  // of the last token that was looked at
 };
 
 }  // namespace boxwood::io::pbrt
