@@ -69,21 +69,5 @@ TEST(Box, MeasuresOfHugeAndTinyBoxesAreFinite) {
   EXPECT_EQ(half_area({{0, 0, 0}, {2, 3, 4}}), 26);
 }
 
-TEST(Box, DistanceIsMonotonicUnderInclusion) {
-  Random random(2);
-  for (int i = 0; i < 100'000; ++i) {
-    Box3 inner;
-    inner.extend(random.in_box(splat(-1), splat(1)));
-    inner.extend(random.in_box(splat(-1), splat(1)));
-    Box3 outer = inner;
-    outer.extend(random.in_box(splat(-2), splat(2)));
-    const Vec3 p = random.in_box(splat(-3), splat(3));
-    EXPECT_LE(distance_squared(outer, p), distance_squared(inner, p));
-    EXPECT_EQ(distance_squared(inner, p) == 0, inner.contains(p));
-  }
-  EXPECT_EQ(distance_squared({{0, 0, 0}, {1, 1, 1}}, {2, 0.5f, -2}), 5);
-  EXPECT_EQ(distance_squared(Box3{}, {0, 0, 0}), kInfinity);
-}
-
 }  // namespace
 }  // namespace boxwood

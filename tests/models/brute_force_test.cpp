@@ -1,6 +1,6 @@
 // Closest hit and any hit on real scenes, against a search with no tree at all: equal, bit for bit.
-#include "boxwood/shape/gate.h"
 #include "boxwood/scene/parts.h"
+#include "boxwood/shape/gate.h"
 #include "models.h"
 
 namespace boxwood {
@@ -22,7 +22,8 @@ struct Found {
   }
 };
 
-/// Shows every triangle of every instance to every ray, a few thousand triangles at a time so that they stay in the cache.
+/// Shows every triangle of every instance to every ray, a few thousand triangles at a time so that they stay
+/// in the cache.
 std::vector<Hit> search_without_trees(const Scene& scene, const std::vector<Ray>& rays) {
   const Scene::Parts& parts = scene.parts();
   std::vector<Hit> hits(rays.size());
@@ -39,7 +40,8 @@ std::vector<Hit> search_without_trees(const Scene& scene, const std::vector<Ray>
       const Affine3& world_from_object = parts.instances[instance].world_from_object;
       const bool is_moved = !(world_from_object == Affine3::identity());
       Box3 object_box;
-      for (std::size_t k = 0; k < mesh.indices.size(); ++k) object_box.extend(triangle_of(mesh, PrimId(k)).box());
+      for (std::size_t k = 0; k < mesh.indices.size(); ++k)
+        object_box.extend(triangle_of(mesh, PrimId(k)).box());
       const Box3 world_box = transform_box(world_from_object, object_box);
       const Affine3 back = inverse(world_from_object);
 

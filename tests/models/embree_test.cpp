@@ -1,13 +1,14 @@
 // A million rays on each real scene, beside Embree in its robust mode.
 //
-// Embree makes no promise about rays through edges, rounds t differently, and picks either of two surfaces in the same
-// place. So answers may differ; but each difference must have one of the reasons below, worked out in double from the
-// triangles that the two name. A difference without a reason fails.
+// Embree makes no promise about rays through edges, rounds t differently, and picks either of two surfaces in
+// the same place. So answers may differ; but each difference must have one of the reasons below, worked out
+// in double from the triangles that the two name. A difference without a reason fails.
 #include <cstring>
 
 #include <embree3/rtcore.h>
 
 #include "boxwood/scene/parts.h"
+#include "boxwood/shape/vec3d.h"
 #include "models.h"
 
 namespace boxwood {
@@ -16,21 +17,17 @@ namespace {
 using testing::kModels;
 using testing::OnModel;
 
-struct Vec3d {
-  double x, y, z;
-};
-Vec3d widen(Vec3 a) { return {a.x, a.y, a.z}; }
-Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec3d cross(Vec3d a, Vec3d b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double length(Vec3d a) { return std::sqrt(dot(a, a)); }
+using detail::Vec3d;
+using detail::widen;
+double length(Vec3d a) {
+  return std::sqrt(dot(a, a));
+}
 
 /// Where the line of a ray stands to a triangle, worked out in double (Moeller and Trumbore, 1997).
 struct Exact {
-  double t;         ///< On the plane.
-  double cosine;    ///< Between ray and normal; near 0: seen edge-on.
-  double to_edge;   ///< The distance from the nearest edge line, in world units; negative outside.
+  double t;        ///< On the plane.
+  double cosine;   ///< Between ray and normal; near 0: seen edge-on.
+  double to_edge;  ///< The distance from the nearest edge line, in world units; negative outside.
 };
 Exact exact(const Ray& ray, const Triangle& triangle) {
   const Vec3d a = widen(triangle.a), e1 = widen(triangle.b) - a, e2 = widen(triangle.c) - a;
@@ -52,12 +49,14 @@ class EmbreePeer {
     for (const Instance& instance : parts.instances) {
       const auto& mesh = std::get<TriangleMesh>(parts.desc.geometries[instance.geometry.value].shapes);
       RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* p = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                           sizeof(Vec3), mesh.positions.size()));
+      auto* p = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+          geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
       for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-        p[i] = instance.world_from_object == Affine3::identity() ? mesh.positions[i]
-                                                                 : instance.world_from_object.point(mesh.positions[i]);
-      void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.indices.size());
+        p[i] = instance.world_from_object == Affine3::identity()
+                   ? mesh.positions[i]
+                   : instance.world_from_object.point(mesh.positions[i]);
+      void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
+                                              mesh.indices.size());
       std::memcpy(indices, mesh.indices.data(), 12 * mesh.indices.size());
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(scene_, geometry);
@@ -136,8 +135,9 @@ TEST_P(EmbreeOnModel, EveryDisagreementHasAReason) {
     ASSERT_EQ(ours.is_hit(), scene().any_hit(ray)) << "ray " << i;
     const double reach = size / boxwood::length(ray.direction);  // the scene's size, in t
     if (ours.is_hit() == theirs.is_hit() &&
-        (!ours.is_hit() || (ours.instance_id == theirs.instance_id && ours.primitive_id == theirs.primitive_id &&
-                            std::fabs(ours.t - theirs.t) <= 1e-5 * reach))) {
+        (!ours.is_hit() ||
+         (ours.instance_id == theirs.instance_id && ours.primitive_id == theirs.primitive_id &&
+          std::fabs(ours.t - theirs.t) <= 1e-5 * reach))) {
       ++count.same;
       continue;
     }
@@ -147,24 +147,29 @@ TEST_P(EmbreeOnModel, EveryDisagreementHasAReason) {
       ++count.tie;
       continue;
     }
-    // Otherwise the nearer of the two is in question: the ray passes its edge within rounding, meets it at so flat an angle
-    // that rounding moves t that far (by some 16 units in the last place over the cosine), or at an end of the ray.
+    // Otherwise the nearer of the two is in question: the ray passes its edge within rounding, meets it at so
+    // flat an angle that rounding moves t that far (by some 16 units in the last place over the cosine), or
+    // at an end of the ray.
     const bool ours_is_nearer = ours.is_hit() && (!theirs.is_hit() || ours.t < theirs.t);
     const Exact e = exact(ray, triangle(ours_is_nearer ? ours : theirs));
     if (std::fabs(e.to_edge) <= 1e-5 * size) {
       ++count.edge;
-    } else if (ours.is_hit() && theirs.is_hit() && std::fabs(ours.t - theirs.t) * e.cosine <= 0x1p-20 * reach) {
+    } else if (ours.is_hit() && theirs.is_hit() &&
+               std::fabs(ours.t - theirs.t) * e.cosine <= 0x1p-20 * reach) {
       ++count.flat_angle;
     } else if (std::fabs(e.t - ray.t_min) <= 1e-5 * reach || std::fabs(e.t - ray.t_max) <= 1e-5 * reach) {
       ++count.end;
     } else {
       if (count.unexplained++ == 0)
-        first = "ray " + std::to_string(i) + ": t " + std::to_string(ours.t) + " here, " + std::to_string(theirs.t) +
-                " in Embree, exactly " + std::to_string(e.t) + ", " + std::to_string(e.to_edge) + " from an edge";
+        first = "ray " + std::to_string(i) + ": t " + std::to_string(ours.t) + " here, " +
+                std::to_string(theirs.t) + " in Embree, exactly " + std::to_string(e.t) + ", " +
+                std::to_string(e.to_edge) + " from an edge";
     }
   }
-  std::printf("%s: %zu the same; different: %zu coincident, %zu at an edge, %zu at a flat angle, %zu at an end of the ray\n",
-              GetParam().path, count.same, count.tie, count.edge, count.flat_angle, count.end);
+  std::printf(
+      "%s: %zu the same; different: %zu coincident, %zu at an edge, %zu at a flat angle, %zu at an end of "
+      "the ray\n",
+      GetParam().path, count.same, count.tie, count.edge, count.flat_angle, count.end);
   EXPECT_EQ(count.unexplained, 0u) << first;
   EXPECT_GT(count.same, rays.size() * 99 / 100);
 }

@@ -1,6 +1,7 @@
 // models.h: which real scenes do these tests look at, and with which rays?
 //
-// The folder comes from the environment variable BOXWOOD_MODELS; without it every test here skips, and says so.
+// The folder comes from the environment variable BOXWOOD_MODELS; without it every test here skips, and says
+// so.
 #pragma once
 
 #include <cstdlib>
@@ -23,8 +24,9 @@ struct Model {
 };
 
 inline constexpr Model kModels[] = {
-    {"bunny.obj", 69451},        {"dragon.ply", 202520}, {"kitchen/scene.pbrt", 1443517}, {"Duck.glb", 4212},
-    {"CesiumMilkTruck.glb", 3624}, {"BoxTextured.glb", 12}, {"BoxInterleaved.glb", 12}};
+    {"bunny.obj", 69451},      {"dragon.ply", 202520},        {"kitchen/scene.pbrt", 1443517},
+    {"Duck.glb", 4212},        {"CesiumMilkTruck.glb", 3624}, {"BoxTextured.glb", 12},
+    {"BoxInterleaved.glb", 12}};
 
 inline std::filesystem::path models_folder() {
   const char* folder = std::getenv("BOXWOOD_MODELS");
@@ -52,7 +54,8 @@ inline std::string model_name(const ::testing::TestParamInfo<Model>& info) {
   return name;
 }
 
-/// A third from outside towards the bounds, a third from inside in all directions, a third that leaves a surface.
+/// A third from outside towards the bounds, a third from inside in all directions, a third that leaves a
+/// surface.
 inline std::vector<Ray> model_rays(const Scene& scene, std::size_t count) {
   Random random(17);
   const Box3 box = scene.bounds();

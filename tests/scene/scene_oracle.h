@@ -1,6 +1,7 @@
 // scene_oracle.h: what would a scene answer if it had no trees?
 //
-// Visits every primitive of every instance through the same leaf rules (shape/gate.h) and sorts by the contract.
+// Visits every primitive of every instance through the same leaf rules (shape/gate.h) and sorts by the
+// contract.
 #pragma once
 
 #include <algorithm>
@@ -60,7 +61,8 @@ inline std::vector<Hit> all_hits_without_trees(const Scene& scene, const Ray& ra
         meet_all(geometry, world, PrimId(p), sink);
       } else {
         if (inside.is_empty()) continue;
-        const PreparedRay local(back.point(world.origin), back.vector(world.direction), -kInfinity, kInfinity, object_box);
+        const PreparedRay local(back.point(world.origin), back.vector(world.direction), -kInfinity, kInfinity,
+                                object_box);
         BoxGate<OracleSink> gate(world, inside, sink);
         if (local.is_valid()) meet_all(geometry, local, PrimId(p), gate);
       }

@@ -27,18 +27,22 @@ TriangleMesh flat_square() {
   return {{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
 }
 
-/// Everything that a scene can hold: meshes and shapes, in the world and under turned, mirrored, stretched and flat-lying
-/// transforms, some in the same place.
+/// Everything that a scene can hold: meshes and shapes, in the world and under turned, mirrored, stretched
+/// and flat-lying transforms, some in the same place.
 SceneDesc mixed_scene() {
   Random random(7);
   SceneDesc desc;
   const GeometryId soup = desc.add(random_mesh(random, 200, 0.3f));
   const GeometryId square = desc.add(flat_square());
-  const GeometryId balls = desc.add(std::vector<Sphere>{{{0, 0, 0}, 0.5f}, {{1, 0, 0}, 0.25f}, {{0, 0, 0}, 0.5f}});
+  const GeometryId balls =
+      desc.add(std::vector<Sphere>{{{0, 0, 0}, 0.5f}, {{1, 0, 0}, 0.25f}, {{0, 0, 0}, 0.5f}});
   const GeometryId quads = desc.add(std::vector<Quad>{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}});
-  const GeometryId blocks = desc.add(std::vector<Cuboid>{{{-0.2f, -0.2f, -0.2f}, {0.2f, 0.2f, 0.2f}}, {{0.2f, -0.2f, -0.2f}, {0.4f, 0.2f, 0.2f}}});
-  const GeometryId disks = desc.add(std::vector<Disk>{{{0, 0, 0}, {0, 1, 0}, 1}, {{0, 0.5f, 0}, {1, 1, 0}, 0.3f}});
-  const GeometryId mixed = desc.add(std::vector<AnyShape>{Sphere{{2, 2, 2}, 1}, Cuboid{{1, 1, 1}, {2, 2, 2}}});
+  const GeometryId blocks = desc.add(std::vector<Cuboid>{{{-0.2f, -0.2f, -0.2f}, {0.2f, 0.2f, 0.2f}},
+                                                         {{0.2f, -0.2f, -0.2f}, {0.4f, 0.2f, 0.2f}}});
+  const GeometryId disks =
+      desc.add(std::vector<Disk>{{{0, 0, 0}, {0, 1, 0}, 1}, {{0, 0.5f, 0}, {1, 1, 0}, 0.3f}});
+  const GeometryId mixed =
+      desc.add(std::vector<AnyShape>{Sphere{{2, 2, 2}, 1}, Cuboid{{1, 1, 1}, {2, 2, 2}}});
 
   for (const GeometryId id : {soup, square, balls, quads, blocks, disks, mixed}) {
     desc.add({id, Affine3::identity(), {}});
@@ -46,7 +50,10 @@ SceneDesc mixed_scene() {
     desc.add({id, Affine3::translation({3, 0, 0}), {}});
     desc.add({id, Affine3::translation({3, 0, 0}), {}});
     desc.add({id, Affine3::translation({0, 3, 1}) * Affine3::rotation({1, 2, 3}, 33), {}});
-    desc.add({id, Affine3::translation({-3, 0, 0}) * Affine3::scale({-1, 0.3f, 2}) * Affine3::rotation({0, 1, 1}, 70), {}});
+    desc.add(
+        {id,
+         Affine3::translation({-3, 0, 0}) * Affine3::scale({-1, 0.3f, 2}) * Affine3::rotation({0, 1, 1}, 70),
+         {}});
     desc.add({id, Affine3::translation({0, -300, 0}) * Affine3::scale(100), {}});
   }
   return desc;
@@ -160,9 +167,10 @@ TEST(Scene, EmptySceneAndUnusableRaysMiss) {
   desc.add(std::vector<Sphere>{{{0, 0, 0}, 1}});
   const Scene scene(desc);
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const Ray& ray : {Ray{{nan, 0, 0}, 0, {0, 0, 1}}, Ray{{0, 0, 0}, 0, {0, nan, 1}}, Ray{{0, 0, 0}, 0, {0, 0, 0}},
-                         Ray{{0, 0, 0}, nan, {0, 0, 1}}, Ray{{0, 0, 0}, 0, {0, 0, 1}, nan}, Ray{{0, 0, 0}, 3, {0, 0, 1}, 2},
-                         Ray{{kInfinity, 0, 0}, 0, {0, 0, 1}}, Ray{{0, 0, 0}, 0, {0, 0, kInfinity}}}) {
+  for (const Ray& ray :
+       {Ray{{nan, 0, 0}, 0, {0, 0, 1}}, Ray{{0, 0, 0}, 0, {0, nan, 1}}, Ray{{0, 0, 0}, 0, {0, 0, 0}},
+        Ray{{0, 0, 0}, nan, {0, 0, 1}}, Ray{{0, 0, 0}, 0, {0, 0, 1}, nan}, Ray{{0, 0, 0}, 3, {0, 0, 1}, 2},
+        Ray{{kInfinity, 0, 0}, 0, {0, 0, 1}}, Ray{{0, 0, 0}, 0, {0, 0, kInfinity}}}) {
     EXPECT_FALSE(scene.closest_hit(ray).is_hit());
     EXPECT_FALSE(scene.any_hit(ray));
   }
@@ -178,12 +186,14 @@ TEST(Scene, RefusesWhatIsWrongAtTheDoor) {
     return "accepted";
   };
   SceneDesc nan_vertex;
-  nan_vertex.add(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, std::numeric_limits<float>::quiet_NaN(), 0}}, {{0, 1, 2}}, {}, {}});
+  nan_vertex.add(TriangleMesh{
+      {{0, 0, 0}, {1, 0, 0}, {0, std::numeric_limits<float>::quiet_NaN(), 0}}, {{0, 1, 2}}, {}, {}});
   EXPECT_NE(message(nan_vertex).find("geometry 0, vertex 2"), std::string::npos) << message(nan_vertex);
 
   SceneDesc bad_index;
   bad_index.add(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}, {}, {}});
-  EXPECT_NE(message(bad_index).find("geometry 0, triangle 1 has index 3"), std::string::npos) << message(bad_index);
+  EXPECT_NE(message(bad_index).find("geometry 0, triangle 1 has index 3"), std::string::npos)
+      << message(bad_index);
 
   SceneDesc flat;
   flat.add({flat.add(flat_square()), Affine3::scale({1, 0, 1}), {}});
@@ -201,7 +211,8 @@ TEST(Scene, ClosestPointEqualsTheBestOfAllPrimitives) {
   const GeometryId balls = desc.add(std::vector<Sphere>{{{0, 2, 0}, 0.5f}});
   desc.add({soup, Affine3::identity(), {}});
   desc.add({soup, Affine3::translation({2, 0, 0}) * Affine3::scale({1, 3, -1}), {}});
-  desc.add({balls, Affine3::translation({0, 2, 0}) * Affine3::rotation({1, 1, 0}, 20) * Affine3::scale(2), {}});
+  desc.add(
+      {balls, Affine3::translation({0, 2, 0}) * Affine3::rotation({1, 1, 0}, 20) * Affine3::scale(2), {}});
   const Scene scene(desc);
   const TriangleMesh& mesh = std::get<TriangleMesh>(desc.geometries[0].shapes);
 

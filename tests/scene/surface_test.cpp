@@ -8,8 +8,8 @@
 namespace boxwood {
 namespace {
 
-/// Shoots at single primitives of one size and shape, far from the world's origin or near it, and lets every hit send out
-/// rays to its own side. Returns how many of those hit the primitive again.
+/// Shoots at single primitives of one size and shape, far from the world's origin or near it, and lets every
+/// hit send out rays to its own side. Returns how many of those hit the primitive again.
 template <class MakeGeometry>
 int self_hits(float scale, float offset, const Affine3& placed, const MakeGeometry& make, float& farthest) {
   Random random(5);
@@ -31,7 +31,8 @@ int self_hits(float scale, float offset, const Affine3& placed, const MakeGeomet
     for (int k = 0; k < 20; ++k) {
       // Half of the rays leave at a grazing angle.
       Vec3 direction = random.direction();
-      if (k % 2) direction = direction - surface.normal * (dot(direction, surface.normal) * random.uniform(0.999f, 1));
+      if (k % 2)
+        direction = direction - surface.normal * (dot(direction, surface.normal) * random.uniform(0.999f, 1));
       const Ray next = surface.spawn(direction);
       const Hit again = scene.closest_hit(next);
       // Closed shapes are met again from inside, at their far side: only a hit at the start is a self-hit.
@@ -62,7 +63,8 @@ GeometryId disk(SceneDesc& desc, Random& random, Vec3 center, float scale) {
 }
 
 TEST(Surface, NextRayNeverHitsTheFlatPrimitiveItLeavesAtAnyScale) {
-  const Affine3 turned = Affine3::translation({1, 2, 3}) * Affine3::rotation({1, 2, 3}, 40) * Affine3::scale({1, 2, 0.5f});
+  const Affine3 turned =
+      Affine3::translation({1, 2, 3}) * Affine3::rotation({1, 2, 3}, 40) * Affine3::scale({1, 2, 0.5f});
   for (const Affine3& placed : {Affine3::identity(), turned})
     for (const float scale : {1e-3f, 1.0f, 1e3f, 1e6f})
       for (const float offset : {0.0f, 10.0f, 1000.0f}) {

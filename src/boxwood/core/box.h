@@ -59,11 +59,4 @@ constexpr double half_area(const Box3& box) {
   return x * y + y * z + z * x;
 }
 
-/// The squared distance from `p` to the nearest point of `box`; 0 inside. Monotonic: never larger for a box than
-/// for any box inside it.
-constexpr float distance_squared(const Box3& box, Vec3 p) {
-  const Vec3 outside = max(max(box.lower - p, p - box.upper), Vec3{0, 0, 0});
-  return dot(outside, outside);
-}
-
 }  // namespace boxwood

@@ -1,25 +1,29 @@
 // closest_point.cpp: which point of a scene is nearest?
 //
-// The walk of traverse.h with a distance in place of a t. Boxes of placed objects are taken into the world one by one, and
-// the distance to a primitive is never reported below that of its own box: the law of gate.h, for distances.
+// The walk of traverse.h with a distance in place of a t. Boxes of placed objects are taken into the world
+// one by one, and the distance to a primitive is never reported below that of its own box: the law of gate.h,
+// for distances.
 #include <stdexcept>
 
+#include "boxwood/query/distance.h"
 #include "boxwood/scene/parts.h"
 
 namespace boxwood {
 namespace {
 
 struct Best {
-  float limit;  // squared
+  float limit;  // the distance
   bool found = false;
   Vec3 position;
   InstanceId instance_id;
   PrimId primitive_id;
 
-  void consider(float d2, Vec3 p, InstanceId instance, PrimId primitive) {
-    if (!(d2 <= limit)) return;
-    if (found && d2 == limit && (instance != instance_id ? instance > instance_id : primitive >= primitive_id)) return;
-    limit = d2;
+  void consider(float distance_found, Vec3 p, InstanceId instance, PrimId primitive) {
+    if (!(distance_found <= limit)) return;
+    if (found && distance_found == limit &&
+        (instance != instance_id ? instance > instance_id : primitive >= primitive_id))
+      return;
+    limit = distance_found;
     found = true;
     position = p;
     instance_id = instance;
@@ -32,7 +36,9 @@ struct View {
   Vec3 point;
   const Placement* placement;
 
-  Box3 to_world(const Box3& box) const { return placement ? transform_box(placement->world_from_object, box) : box; }
+  Box3 to_world(const Box3& box) const {
+    return placement ? transform_box(placement->world_from_object, box) : box;
+  }
   Vec3 to_world(Vec3 p) const { return placement ? placement->world_from_object.point(p) : p; }
   Triangle to_world(const Triangle& t) const { return {to_world(t.a), to_world(t.b), to_world(t.c)}; }
 
@@ -54,15 +60,16 @@ struct PointQuery {
   const View& view;
   Best& best;
 
-  float bound(const Box3& box) const { return distance_squared(view.to_world(box), view.point); }
+  float bound(const Box3& box) const { return distance(view.to_world(box), view.point); }
   float limit() const { return best.limit; }
   void visit(PrimId id) {
     const Item& item = items[id.value];
     const auto meet = [&](const auto& shape) {
       if (shape.box().is_empty()) return;
       const Vec3 p = view.nearest(shape);
-      const float d2 = max(length_squared(p - view.point), bound(shape.box()));
-      best.consider(d2, p, view.placement ? view.placement->instance_id : item.instance_id, item.primitive_id);
+      const float found = max(distance(p, view.point), bound(shape.box()));
+      best.consider(found, p, view.placement ? view.placement->instance_id : item.instance_id,
+                    item.primitive_id);
     };
     if constexpr (std::is_same_v<Item, LeafTriangle>)
       meet(Triangle{item.a, item.b, item.c});
@@ -82,7 +89,7 @@ struct PlacementPointQuery {
   const Scene::Parts& parts;
   Vec3 point;
   Best& best;
-  float bound(const Box3& box) const { return distance_squared(box, point); }
+  float bound(const Box3& box) const { return distance(box, point); }
   float limit() const { return best.limit; }
   void visit(PrimId id) {
     const Placement& placement = parts.placements[id.value];
@@ -97,13 +104,13 @@ ScenePoint Scene::closest_point(Vec3 point, float max_distance) const {
     throw std::invalid_argument("closest_point: the scene cannot answer, " + parts_->closest_point_obstacle);
   if (!is_finite(point) || !(max_distance >= 0)) return {};
 
-  Best best{max_distance * max_distance, false, {}, {}, {}};
+  Best best{max_distance, false, {}, {}, {}};
   search(*parts_, parts_->world, View{point, nullptr}, best);
   PlacementPointQuery placements{*parts_, point, best};
   traverse(parts_->top_level, placements);
   if (!best.found) return {};
-  return {std::sqrt(best.limit), best.position, best.instance_id,
-          parts_->instances[best.instance_id.value].geometry, best.primitive_id};
+  return {best.limit, best.position, best.instance_id, parts_->instances[best.instance_id.value].geometry,
+          best.primitive_id};
 }
 
 }  // namespace boxwood

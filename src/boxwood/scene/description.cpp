@@ -7,13 +7,17 @@ namespace {
 
 constexpr float kMaxCoordinate = 0x1p126f;
 
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument("scene: " + what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::invalid_argument("scene: " + what);
+}
 
 std::string show(Vec3 p) {
   return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")";
 }
 
-bool is_usable(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+bool is_usable(Vec3 p) {
+  return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate;
+}
 
 void check_mesh(const TriangleMesh& mesh, const std::string& name) {
   const std::size_t vertices = mesh.positions.size();
@@ -24,8 +28,8 @@ void check_mesh(const TriangleMesh& mesh, const std::string& name) {
   for (std::size_t i = 0; i < mesh.indices.size(); ++i)
     for (const std::uint32_t index : mesh.indices[i])
       if (index >= vertices)
-        fail(name + ", triangle " + std::to_string(i) + " has index " + std::to_string(index) + ", but there are " +
-             std::to_string(vertices) + " vertices");
+        fail(name + ", triangle " + std::to_string(i) + " has index " + std::to_string(index) +
+             ", but there are " + std::to_string(vertices) + " vertices");
   const auto check_length = [&](std::size_t length, const char* what) {
     if (length != 0 && length != vertices)
       fail(name + " has " + std::to_string(length) + " " + what + ", expected none or one for each of the " +
@@ -39,8 +43,8 @@ void check_shape_boxes(const auto& shapes, const std::string& name) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const Box3 box = shapes[i].box();
     if (!box.is_empty() && !(is_usable(box.lower) && is_usable(box.upper)))
-      fail(name + ", shape " + std::to_string(i) + " reaches from " + show(box.lower) + " to " + show(box.upper) +
-           ", expected finite coordinates of at most 2^126");
+      fail(name + ", shape " + std::to_string(i) + " reaches from " + show(box.lower) + " to " +
+           show(box.upper) + ", expected finite coordinates of at most 2^126");
   }
 }
 
@@ -86,7 +90,8 @@ std::size_t defined_primitive_count(const SceneDesc& desc) {
 std::size_t shown_primitive_count(const SceneDesc& desc) {
   if (desc.instances.empty()) return defined_primitive_count(desc);
   std::size_t count = 0;
-  for (const Instance& instance : desc.instances) count += primitive_count(desc.geometries[instance.geometry.value]);
+  for (const Instance& instance : desc.instances)
+    count += primitive_count(desc.geometries[instance.geometry.value]);
   return count;
 }
 
@@ -121,8 +126,9 @@ void check(const SceneDesc& desc) {
     }
     check_material(geometry.material, name);
     if (!geometry.materials.empty() && geometry.materials.size() != primitive_count(geometry))
-      fail(name + " has " + std::to_string(geometry.materials.size()) + " materials, expected none or one for each of the " +
-           std::to_string(primitive_count(geometry)) + " primitives");
+      fail(name + " has " + std::to_string(geometry.materials.size()) +
+           " materials, expected none or one for each of the " + std::to_string(primitive_count(geometry)) +
+           " primitives");
     for (const MaterialId id : geometry.materials) check_material(id, name);
   }
 

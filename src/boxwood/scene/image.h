@@ -10,8 +10,9 @@ namespace boxwood {
 /// A picture: rows from top to bottom, `channels` floats a pixel, linear light (not sRGB encoded).
 struct Image {
   int width = 0, height = 0, channels = 3;
-  std::vector<float> pixels;                ///< height x width x channels.
-  std::vector<std::string> channel_names;   ///< Empty, or one for each channel ("R", "G", "B", "depth.Z", ...).
+  std::vector<float> pixels;  ///< height x width x channels.
+  std::vector<std::string>
+      channel_names;  ///< Empty, or one for each channel ("R", "G", "B", "depth.Z", ...).
 
   Image() = default;
   Image(int width, int height, int channels = 3)

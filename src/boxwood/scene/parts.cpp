@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "boxwood/build/build.h"
+#include "boxwood/shape/instance.h"
 
 namespace boxwood {
 namespace {
@@ -11,7 +12,8 @@ namespace {
 constexpr std::size_t kGrain = 1 << 14;
 
 /// Adds the primitives of one geometry, as one instance shows them, to a part.
-void add_geometry(Part& part, const SceneDesc& desc, GeometryId geometry_id, InstanceId instance_id, Executor& executor) {
+void add_geometry(Part& part, const SceneDesc& desc, GeometryId geometry_id, InstanceId instance_id,
+                  Executor& executor) {
   const Geometry& geometry = desc.geometries[geometry_id.value];
   const std::size_t count = primitive_count(geometry);
   if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
@@ -28,7 +30,8 @@ void add_geometry(Part& part, const SceneDesc& desc, GeometryId geometry_id, Ins
 
 /// Builds a tree over `items`, puts them into leaf order and makes prim_ids count along.
 template <class Item, class BoxOf>
-Bvh build_in_leaf_order(std::vector<Item>& items, const BoxOf& box_of, const BuildOptions& options, Executor& executor) {
+Bvh build_in_leaf_order(std::vector<Item>& items, const BoxOf& box_of, const BuildOptions& options,
+                        Executor& executor) {
   std::vector<Box3> boxes(items.size());
   parallel_for(executor, 0, items.size(), kGrain, [&](std::size_t i) { boxes[i] = box_of(items[i]); });
   Bvh bvh = build(boxes, options);
@@ -44,7 +47,11 @@ Bvh build_in_leaf_order(std::vector<Item>& items, const BoxOf& box_of, const Bui
 
 void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options, Executor& executor) {
   part.triangle_bvh = build_in_leaf_order(
-      part.triangles, [](const LeafTriangle& t) { return Triangle{t.a, t.b, t.c}.box(); }, options, executor);
+      part.triangles,
+      [](const LeafTriangle& t) {
+        return Triangle{t.a, t.b, t.c}.box();
+      },
+      options, executor);
   part.shape_bvh = build_in_leaf_order(
       part.shapes,
       [&](const LeafShape& s) {
@@ -55,17 +62,10 @@ void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options,
   part.bounds = unite(part.triangle_bvh.bounds(), part.shape_bvh.bounds());
 }
 
-/// Whether the linear part keeps angles, up to rounding.
-bool is_similarity(const Affine3& m) {
-  const float x = length_squared(m.x), y = length_squared(m.y), z = length_squared(m.z);
-  const float tolerance = 1e-5f * max(x, max(y, z));
-  return std::fabs(x - y) <= tolerance && std::fabs(y - z) <= tolerance && std::fabs(dot(m.x, m.y)) <= tolerance &&
-         std::fabs(dot(m.y, m.z)) <= tolerance && std::fabs(dot(m.z, m.x)) <= tolerance;
-}
-
 /// Why the nearest point of `geometry` under a transform is not known; empty when it is.
 std::string closest_point_obstacle(const Geometry& geometry, bool under_similarity) {
-  if (std::holds_alternative<TriangleMesh>(geometry.shapes) || std::holds_alternative<std::vector<Quad>>(geometry.shapes))
+  if (std::holds_alternative<TriangleMesh>(geometry.shapes) ||
+      std::holds_alternative<std::vector<Quad>>(geometry.shapes))
     return "";
   if (!under_similarity) return "it has shapes under a transform that is not a similarity";
   if (const auto* shapes = std::get_if<std::vector<AnyShape>>(&geometry.shapes))
@@ -103,8 +103,8 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
       }
       parts->object_from_world[i] = inverse(instance.world_from_object);
       under_similarity = is_similarity(instance.world_from_object);
-      parts->placements.push_back({InstanceId(i), part_index, instance.world_from_object, parts->object_from_world[i],
-                                   Box3{}, under_similarity});
+      parts->placements.push_back({InstanceId(i), part_index, instance.world_from_object,
+                                   parts->object_from_world[i], Box3{}, under_similarity});
     }
     if (parts->closest_point_obstacle.empty())
       parts->closest_point_obstacle = closest_point_obstacle(geometry, under_similarity);
@@ -114,16 +114,19 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   for (Part& object : parts->objects) build_trees(object, parts->desc, options, executor);
   build_trees(parts->world, parts->desc, options, executor);
   for (Placement& placement : parts->placements)
-    placement.world_box = transform_box(placement.world_from_object, parts->objects[placement.part_index].bounds);
+    placement.world_box =
+        transform_box(placement.world_from_object, parts->objects[placement.part_index].bounds);
   for (const Placement& placement : parts->placements)
-    if (!placement.world_box.is_empty() && !(is_finite(placement.world_box.lower) && is_finite(placement.world_box.upper)))
+    if (!placement.world_box.is_empty() &&
+        !(is_finite(placement.world_box.lower) && is_finite(placement.world_box.upper)))
       throw std::invalid_argument("scene: instance " + std::to_string(placement.instance_id.value) +
                                   " reaches beyond what a float can hold");
   parts->top_level = build_in_leaf_order(
       parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
-  parts->build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  parts->build_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return parts;
 }
 

@@ -1,8 +1,9 @@
 // parts.h: what stands behind a Scene?
 //
-// A Part is everything that one tree level needs: the triangles and the other shapes of one space, each with a binary tree.
-// The world is one Part (all geometry that is placed without a transform); each geometry that is placed under a
-// transform is a Part in its own object space, shared by its placements, and a top-level tree organises the placements.
+// A Part is everything that one tree level needs: the triangles and the other shapes of one space, each with
+// a binary tree. The world is one Part (all geometry that is placed without a transform); each geometry that
+// is placed under a transform is a Part in its own object space, shared by its placements, and a top-level
+// tree organises the placements.
 #pragma once
 
 #include "boxwood/scene/scene.h"
@@ -24,9 +25,9 @@ struct LeafShape {
 };
 
 struct Part {
-  Bvh triangle_bvh;                     ///< prim_ids count 0, 1, 2, ...: the triangles stand in leaf order.
+  Bvh triangle_bvh;  ///< prim_ids count 0, 1, 2, ...: the triangles stand in leaf order.
   std::vector<LeafTriangle> triangles;
-  Bvh shape_bvh;                        ///< The same for shapes.
+  Bvh shape_bvh;  ///< The same for shapes.
   std::vector<LeafShape> shapes;
   Box3 bounds;
 };
@@ -37,20 +38,20 @@ struct Placement {
   std::uint32_t part_index;
   Affine3 world_from_object, object_from_world;
   Box3 world_box;
-  bool is_similarity;                   ///< Turns, mirrors and scales evenly: keeps which point is nearest.
+  bool is_similarity;  ///< Turns, mirrors and scales evenly: keeps which point is nearest.
 };
 
 struct Scene::Parts {
   SceneDesc desc;
-  std::vector<Instance> instances;      ///< InstanceId -> placed_instances(desc).
+  std::vector<Instance> instances;         ///< InstanceId -> placed_instances(desc).
   std::vector<Affine3> object_from_world;  ///< InstanceId -> the inverse of its transform.
   Part world;
   std::vector<Part> objects;
   std::vector<Placement> placements;
-  Bvh top_level;                        ///< Over the world boxes of `placements`.
+  Bvh top_level;  ///< Over the world boxes of `placements`.
   Box3 bounds;
   double build_ms = 0;
-  std::string closest_point_obstacle;   ///< Why closest_point cannot be answered; empty when it can.
+  std::string closest_point_obstacle;  ///< Why closest_point cannot be answered; empty when it can.
 };
 
 /// Checks `desc` and builds every tree. Errors as in Scene's constructor.

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kRaysPerTask = 1024;
 
-Hit make_hit(const Scene::Parts& parts, const Crossing& crossing, InstanceId instance_id, PrimId primitive_id) {
+Hit make_hit(const Scene::Parts& parts, const Crossing& crossing, InstanceId instance_id,
+             PrimId primitive_id) {
   Hit hit;
   hit.t = crossing.t;
   hit.u = crossing.u;
@@ -33,8 +34,9 @@ struct ClosestSink {
   void report(const Crossing& c, InstanceId instance, PrimId primitive) {
     if (crossing.is_hit() && c.t == crossing.t) {
       // The geometry follows from the instance, so two ids and the part decide a tie.
-      if (instance != instance_id ? instance > instance_id
-                                  : (primitive != primitive_id ? primitive > primitive_id : c.part >= crossing.part))
+      if (instance != instance_id
+              ? instance > instance_id
+              : (primitive != primitive_id ? primitive > primitive_id : c.part >= crossing.part))
         return;
     }
     crossing = c;
@@ -75,9 +77,10 @@ void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit) {
     normal = triangle_of(*mesh, hit.primitive_id).normal();
   } else {
     const Crossing crossing{hit.t, hit.u, hit.v, hit.part};
-    const PreparedRay local = is_moved ? PreparedRay(object_from_world.point(ray.origin),
-                                                     object_from_world.vector(ray.direction), -kInfinity, kInfinity, {})
-                                       : ray;
+    const PreparedRay local =
+        is_moved ? PreparedRay(object_from_world.point(ray.origin), object_from_world.vector(ray.direction),
+                               -kInfinity, kInfinity, {})
+                 : ray;
     normal = with_shape(geometry, hit.primitive_id,
                         [&](const auto& shape) { return shape.normal(local, crossing); });
   }
@@ -98,8 +101,8 @@ Hit find_closest(const Scene::Parts& parts, const Ray& ray, Statistics& statisti
 
 void check_lengths(std::size_t rays, std::size_t hits) {
   if (rays != hits)
-    throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " + std::to_string(hits) +
-                                " hits, expected the same number");
+    throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " +
+                                std::to_string(hits) + " hits, expected the same number");
 }
 
 }  // namespace
@@ -150,8 +153,12 @@ void Scene::any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* e
                [&](std::size_t i) { hits[i] = any_hit(rays[i]); });
 }
 
-const SceneDesc& Scene::description() const { return parts_->desc; }
-Box3 Scene::bounds() const { return parts_->bounds; }
+const SceneDesc& Scene::description() const {
+  return parts_->desc;
+}
+Box3 Scene::bounds() const {
+  return parts_->bounds;
+}
 
 SceneStatistics Scene::statistics() const {
   SceneStatistics s;

@@ -1,7 +1,8 @@
 // scene.h: what does a ray hit in a whole scene? The hall: built once, read-only from then on.
 //
-// Geometry that stands in the world as it was defined shares one tree; geometry under a transform has a tree of its
-// own, in object space, below a tree of instances. The answer is the same either way up to the rounding of the transform.
+// Geometry that stands in the world as it was defined shares one tree; geometry under a transform has a tree
+// of its own, in object space, below a tree of instances. The answer is the same either way up to the
+// rounding of the transform.
 #pragma once
 
 #include <memory>
@@ -27,7 +28,7 @@ struct ScenePoint {
 
 /// Sizes of what was built.
 struct SceneStatistics {
-  std::size_t primitives = 0;          ///< Shown: each instance counts.
+  std::size_t primitives = 0;  ///< Shown: each instance counts.
   std::size_t trees = 0, nodes = 0;
   std::size_t tree_bytes = 0, geometry_bytes = 0;
   double build_ms = 0;
@@ -35,18 +36,20 @@ struct SceneStatistics {
 
 class Scene {
  public:
-  /// Checks and copies the geometry and builds the trees. Throws std::invalid_argument (see check), Cancelled.
+  /// Checks and copies the geometry and builds the trees. Throws std::invalid_argument (see check),
+  /// Cancelled.
   explicit Scene(SceneDesc desc, const BuildOptions& options = BuildOptions::balanced());
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// The closest hit in [t_min, t_max]; equal t goes to the smallest (instance, geometry, primitive). A miss has
-  /// t = +inf. Any number of threads may ask; nothing is allocated or locked.
+  /// The closest hit in [t_min, t_max]; equal t goes to the smallest (instance, geometry, primitive). A miss
+  /// has t = +inf. Any number of threads may ask; nothing is allocated or locked.
   Hit closest_hit(const Ray& ray) const;
   /// Whether anything is hit in [t_min, t_max].
   bool any_hit(const Ray& ray) const;
-  /// Every crossing in [t_min, t_max] once, in the order of the contract (comes_before). Replaces what `hits` holds.
+  /// Every crossing in [t_min, t_max] once, in the order of the contract (comes_before). Replaces what `hits`
+  /// holds.
   void all_hits(const Ray& ray, std::vector<Hit>& hits) const;
 
   /// The same for many rays: hits[i] answers rays[i], bit for bit as the call with one ray. Throws
@@ -58,8 +61,8 @@ class Scene {
   Hit closest_hit(const Ray& ray, TraversalStatistics& statistics) const;
 
   /// The nearest point of any surface within `max_distance`; equal distance goes to the smallest ids.
-  /// Throws std::invalid_argument for a scene with shapes other than triangles and quads under a transform that is
-  /// not a similarity, and for AnyShape that knows no closest point.
+  /// Throws std::invalid_argument for a scene with shapes other than triangles and quads under a transform
+  /// that is not a similarity, and for AnyShape that knows no closest point.
   ScenePoint closest_point(Vec3 point, float max_distance = kInfinity) const;
 
   const SceneDesc& description() const;

@@ -1,7 +1,7 @@
-// Error bounds follow Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8: a position made of
-// rounded operations comes with a bound of what rounding did, and the next ray starts beyond it. To that we add what the
-// leaf test itself may get wrong when it meets the same primitive again from so near, and what a transform
-// rounds away on the way to object space and back.
+// Error bounds follow Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8: a
+// position made of rounded operations comes with a bound of what rounding did, and the next ray starts beyond
+// it. To that we add what the leaf test itself may get wrong when it meets the same primitive again from so
+// near, and what a transform rounds away on the way to object space and back.
 #include "boxwood/scene/surface.h"
 
 #include "boxwood/scene/parts.h"
@@ -20,12 +20,15 @@ struct LocalSurface {
   Vec2 uv;
 };
 
-/// How far from the plane of (a, b, c), near `p`, the watertight test could still report a crossing: its vertices are moved
-/// by up to 6u of their distance, and its plane is tilted by the rounding of the cross product, which matters for slivers.
+/// How far from the plane of (a, b, c), near `p`, the watertight test could still report a crossing: its
+/// vertices are moved by up to 6u of their distance, and its plane is tilted by the rounding of the cross
+/// product, which matters for slivers.
 float leaf_test_error(const Triangle& t, Vec3 p) {
-  const float reach = std::sqrt(max(length_squared(t.a - p), max(length_squared(t.b - p), length_squared(t.c - p))));
+  const float reach =
+      std::sqrt(max(length_squared(t.a - p), max(length_squared(t.b - p), length_squared(t.c - p))));
   const Vec3 e1 = t.b - t.a, e2 = t.c - t.a;
-  const float area = length(cross(e1, e2)), product = std::sqrt(length_squared(e1)) * std::sqrt(length_squared(e2));
+  const float area = length(cross(e1, e2)),
+              product = std::sqrt(length_squared(e1)) * std::sqrt(length_squared(e2));
   const float sliver = area > 0 ? min(product / area, 0x1p12f) : 1.0f;
   return reach * (16 * u + 8 * u * sliver);
 }
@@ -41,7 +44,9 @@ LocalSurface on_triangle(const Triangle& t, float v_weight, float w_weight) {
   return s;
 }
 
-Vec3 blend(Vec3 a, Vec3 b, Vec3 c, float v, float w) { return a * (1 - v - w) + b * v + c * w; }
+Vec3 blend(Vec3 a, Vec3 b, Vec3 c, float v, float w) {
+  return a * (1 - v - w) + b * v + c * w;
+}
 
 LocalSurface on_mesh(const TriangleMesh& mesh, const Hit& hit) {
   LocalSurface s = on_triangle(triangle_of(mesh, hit.primitive_id), hit.u, hit.v);
@@ -60,7 +65,8 @@ LocalSurface on_mesh(const TriangleMesh& mesh, const Hit& hit) {
 
 LocalSurface on_shape(const Quad& quad, const PreparedRay&, const Crossing& c) {
   // Back from the quad's (u, v) to the weights of the half that was hit (see shape/quad.h).
-  LocalSurface s = c.part == 0 ? on_triangle(quad.half(0), c.u - c.v, c.v) : on_triangle(quad.half(1), c.u, c.v - c.u);
+  LocalSurface s =
+      c.part == 0 ? on_triangle(quad.half(0), c.u - c.v, c.v) : on_triangle(quad.half(1), c.u, c.v - c.u);
   s.uv = {c.u, c.v};
   return s;
 }
@@ -84,7 +90,8 @@ LocalSurface on_shape(const Cuboid& cuboid, const PreparedRay& ray, const Crossi
   s.error = abs(s.position) * (4 * u);
   const int across = (axis + 1) % 3, along = (axis + 2) % 3;
   const Vec3 size = cuboid.upper - cuboid.lower, from = s.position - cuboid.lower;
-  s.uv = {size[across] > 0 ? from[across] / size[across] : 0, size[along] > 0 ? from[along] / size[along] : 0};
+  s.uv = {size[across] > 0 ? from[across] / size[across] : 0,
+          size[along] > 0 ? from[along] / size[along] : 0};
   return s;
 }
 
@@ -105,13 +112,16 @@ LocalSurface on_shape(const AnyShape& shape, const PreparedRay& ray, const Cross
   LocalSurface s;
   s.normal = s.shading_normal = shape.normal(ray, c);
   s.position = ray.origin + ray.direction * c.t;
-  s.error = (abs(ray.origin) + abs(ray.direction * c.t)) * (32 * u);  // nothing is known of how it was worked out
+  s.error =
+      (abs(ray.origin) + abs(ray.direction * c.t)) * (32 * u);  // nothing is known of how it was worked out
   s.uv = {c.u, c.v};
   return s;
 }
 
 /// |m| * v: what a transform makes of an error bound.
-Vec3 spread(const Affine3& m, Vec3 v) { return abs(m.x) * v.x + abs(m.y) * v.y + abs(m.z) * v.z; }
+Vec3 spread(const Affine3& m, Vec3 v) {
+  return abs(m.x) * v.x + abs(m.y) * v.y + abs(m.z) * v.z;
+}
 
 }  // namespace
 
@@ -126,9 +136,10 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   // Ask the geometry, in its own space.
   const auto local = [&]() -> LocalSurface {
     if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) return on_mesh(*mesh, hit);
-    const PreparedRay prepared = is_moved ? PreparedRay(object_from_world.point(ray.origin),
-                                                        object_from_world.vector(ray.direction), -kInfinity, kInfinity, {})
-                                          : PreparedRay(ray, {});
+    const PreparedRay prepared =
+        is_moved ? PreparedRay(object_from_world.point(ray.origin), object_from_world.vector(ray.direction),
+                               -kInfinity, kInfinity, {})
+                 : PreparedRay(ray, {});
     const Crossing crossing{hit.t, hit.u, hit.v, hit.part};
     return with_shape(geometry, hit.primitive_id,
                       [&](const auto& shape) { return on_shape(shape, prepared, crossing); });
@@ -140,13 +151,14 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   s.normal = hit.normal;
   s.shading_normal = local.shading_normal;
   s.uv = local.uv;
-  s.material = instance.material.is_valid()     ? instance.material
-               : geometry.materials.empty()     ? geometry.material
-                                                : geometry.materials[hit.primitive_id.value];
+  s.material = instance.material.is_valid() ? instance.material
+               : geometry.materials.empty() ? geometry.material
+                                            : geometry.materials[hit.primitive_id.value];
 
   // Take it to the world, with what the transform rounds away there and when the next ray comes back.
   if (is_moved) {
-    const Vec3 back = spread(object_from_world, abs(world_from_object.point(local.position))) + abs(object_from_world.origin);
+    const Vec3 back = spread(object_from_world, abs(world_from_object.point(local.position))) +
+                      abs(object_from_world.origin);
     const Vec3 object_error = local.error + back * (8 * u);
     s.position = world_from_object.point(local.position);
     s.error = spread(world_from_object, object_error) +

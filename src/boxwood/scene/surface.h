@@ -10,12 +10,14 @@ struct Surface {
   Vec3 position;
   Vec3 error;           ///< The surface passes within this of `position`, component by component.
   Vec3 normal;          ///< Geometric; unit length; as in Hit (not turned towards the ray).
-  Vec3 shading_normal;  ///< Interpolated where the mesh has normals, on the same side as `normal`; else `normal`.
+  Vec3 shading_normal;  ///< Interpolated where the mesh has normals, on the same side as `normal`; else
+                        ///< `normal`.
   Vec2 uv;              ///< Interpolated where the mesh has them; else the hit's u, v.
   MaterialId material;  ///< None: the default material.
 
-  /// A ray from here along `direction` that cannot hit the primitive it leaves, at any scale: the origin is moved along
-  /// the normal, to the side of `direction`, past the error bound and the leaf test's own rounding.
+  /// A ray from here along `direction` that cannot hit the primitive it leaves, at any scale: the origin is
+  /// moved along the normal, to the side of `direction`, past the error bound and the leaf test's own
+  /// rounding.
   Ray spawn(Vec3 direction, float t_max = kInfinity) const;
 };
 

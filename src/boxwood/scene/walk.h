@@ -1,7 +1,8 @@
 // walk.h: how does a ray question walk the two levels of a scene?
 //
-// One walk for closest, any and all hits: they differ only in their sink. Below a placement the ray is in object space, and
-// each crossing passes two gates (shape/gate.h): that of its own box, and that of the placement's world box.
+// One walk for closest, any and all hits: they differ only in their sink. Below a placement the ray is in
+// object space, and each crossing passes two gates (shape/gate.h): that of its own box, and that of the
+// placement's world box.
 #pragma once
 
 #include "boxwood/scene/parts.h"
@@ -44,7 +45,8 @@ struct UnderPlacement {
 template <class Item, class Above, class Sink>
 class PartQuery {
  public:
-  PartQuery(const PreparedRay& ray, const SceneDesc& desc, const std::vector<Item>& items, const Above& above, Sink& sink)
+  PartQuery(const PreparedRay& ray, const SceneDesc& desc, const std::vector<Item>& items, const Above& above,
+            Sink& sink)
       : ray_(ray), desc_(desc), items_(items), above_(above), sink_(sink) {}
 
   float bound(const Box3& box) const { return ray_.bound(box); }
@@ -72,8 +74,8 @@ class PartQuery {
 };
 
 template <class Above, class Sink, class Statistics>
-void walk_part(const Scene::Parts& parts, const Part& part, const PreparedRay& ray, const Above& above, Sink& sink,
-               Statistics& statistics) {
+void walk_part(const Scene::Parts& parts, const Part& part, const PreparedRay& ray, const Above& above,
+               Sink& sink, Statistics& statistics) {
   PartQuery<LeafTriangle, Above, Sink> triangles(ray, parts.desc, part.triangles, above, sink);
   traverse(part.triangle_bvh, triangles, statistics);
   PartQuery<LeafShape, Above, Sink> shapes(ray, parts.desc, part.shapes, above, sink);
@@ -96,8 +98,8 @@ class PlacementQuery {
     const Part& part = parts_.objects[placement.part_index];
     Labelled<Sink> any{sink_, {}, {}};
     const PreparedRay local(placement.object_from_world.point(ray_.origin),
-                            placement.object_from_world.vector(ray_.direction), inner_t_min(ray_, above.inside),
-                            above.gate(any).limit(), part.bounds);
+                            placement.object_from_world.vector(ray_.direction),
+                            inner_t_min(ray_, above.inside), above.gate(any).limit(), part.bounds);
     if (local.is_valid()) walk_part(parts_, part, local, above, sink_, statistics_);
   }
 
@@ -108,7 +110,8 @@ class PlacementQuery {
   Statistics& statistics_;
 };
 
-/// Shows `sink` everything that `ray` may meet: sink.limit(), sink.report(crossing, instance_id, primitive_id).
+/// Shows `sink` everything that `ray` may meet: sink.limit(), sink.report(crossing, instance_id,
+/// primitive_id).
 template <class Sink, class Statistics>
 void walk(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
   walk_part(parts, parts.world, ray, NoPlacement{}, sink, statistics);
