@@ -153,6 +153,8 @@ Image displayable(const Image& image, Mode mode) {
       return normal_as_color(image);
     case Mode::depth:
       return depth_as_grey(image);
+    case Mode::occlusion:
+      return occlusion_as_grey(image);
     case Mode::cost:
       return cost_as_color(image);
     default:
