@@ -45,5 +45,37 @@ TYPED_TEST(OracleOfShapes, HugeTinyAndFarAway) {
   test::expect_equal_to_brute_force("all scales", mixed, {}, 3);
 }
 
+/// A careless shape of a user's own: what it says of crossings and of its nearest point is far outside its
+/// box.
+struct Sloppy {
+  Cuboid block;
+  float error;
+  Box3 box() const { return block.box(); }
+  template <CrossingSink Sink>
+  void intersect(const PreparedRay& ray, Sink&& sink) const {
+    struct Spoiler {
+      std::remove_reference_t<Sink>& sink;
+      float error;
+      float limit() const { return kInfinity; }
+      void report(Crossing crossing) {
+        crossing.t += error;
+        sink.report(crossing);
+      }
+    };
+    block.intersect(ray, Spoiler{sink, error});
+  }
+  Vec3 normal(const PreparedRay& ray, const Crossing& crossing) const { return block.normal(ray, crossing); }
+  Vec3 closest_point(Vec3 p) const { return block.closest_point(p) + (p - block.closest_point(p)) * error; }
+  bool overlaps(const Box3&) const { return true; }
+};
+
+TEST(OracleOfUsersShapes, CarelessOnesGetTheSameAnswersFromEveryTree) {
+  Random random(8);
+  std::vector<Sloppy> shapes;
+  for (const Cuboid& block : test::lattice_shapes<Cuboid>(80, 9))
+    shapes.push_back({block, random.uniform(-1, 1)});
+  test::expect_equal_to_brute_force("careless", shapes, {}, 4);
+}
+
 }  // namespace
 }  // namespace boxwood
