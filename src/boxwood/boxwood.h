@@ -15,9 +15,11 @@
 #include "boxwood/core/hit.h"
 #include "boxwood/core/prepared_ray.h"
 #include "boxwood/core/random.h"
+#include "boxwood/core/morton.h"
 #include "boxwood/core/error.h"
 #include "boxwood/core/progress.h"
 #include "boxwood/core/parallel.h"
+#include "boxwood/core/radix_sort.h"
 
 // Floor 1. shape: what is hit.
 #include "boxwood/shape/concept.h"
@@ -44,6 +46,7 @@
 #include "boxwood/query/closest_hit.h"
 #include "boxwood/query/any_hit.h"
 #include "boxwood/query/all_hits.h"
+#include "boxwood/query/distance.h"
 #include "boxwood/query/closest_point.h"
 #include "boxwood/query/nearest.h"
 #include "boxwood/query/overlap.h"
@@ -51,5 +54,6 @@
 
 // Floor 3. scene: the hall.
 #include "boxwood/scene/description.h"
+#include "boxwood/scene/image.h"
 #include "boxwood/scene/scene.h"
 #include "boxwood/scene/surface.h"
