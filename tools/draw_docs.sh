@@ -1,0 +1,20 @@
+#!/bin/sh
+# draw_docs.sh: are the pictures of the documentation still what the program makes? Draws them again, as PNG and SVG, into
+# out/docs/. Look at them, then put what has changed into docs/images/ (photographs as JPEG, to keep the repository small).
+#
+# With BOXWOOD_MODELS set, the models as well.
+set -eu
+cd "$(dirname "$0")/.."
+program=build/release/boxwood
+out=out/docs
+mkdir -p "$out"
+
+for scene in stilllife cornell spheres soup terrain city; do
+  "$program" render "$scene" -o "$out/$scene.png" --samples 256
+done
+if [ -n "${BOXWOOD_MODELS:-}" ]; then
+  "$program" render "$BOXWOOD_MODELS/bunny.obj" -o "$out/bunny.png" --size 480x480 --samples 256
+  "$program" render "$BOXWOOD_MODELS/CesiumMilkTruck.glb" -o "$out/truck.png" --size 480x480 --samples 256
+  "$program" render "$BOXWOOD_MODELS/kitchen/scene.pbrt" -o "$out/kitchen.png" --size 853x480 --samples 256
+fi
+"$program" ladder --plot "$out/ladder.svg"
