@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kRungSeconds = 1;       // to trace the scene's rays; brute force gets three times as much
+constexpr double kRungSeconds = 1;      // to trace the scene's rays; brute force gets three times as much
 constexpr double kPointSeconds = 0.12;  // to trace rays at one point of the growth
 constexpr std::size_t kGrowthRays = 20'000, kFewestRays = 16;
 constexpr std::size_t kCountedRays =
