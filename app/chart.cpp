@@ -11,14 +11,15 @@ namespace boxwood::app {
 namespace {
 
 // The layout, in pixels: each panel is its margins around its frame.
-constexpr double kPanelWidth = 700, kFrameWidth = 440, kFrameHeight = 420;
-constexpr double kLeft = 74, kTop = 116, kBottom = 64, kLabelHeight = 17;
+constexpr double kPanelWidth = 760, kFrameWidth = 430, kFrameHeight = 420;
+constexpr double kLeft = 112, kTop = 116, kBottom = 64, kLabelHeight = 17;
 
 struct Look {
   const char* color;
-  char marker;  // o: circle, s: square, d: diamond, t: triangle
+  char marker;            // o: circle, s: square, d: diamond, t: triangle
+  const char* dash = "";  // lets a curve of the same course shine through
 };
-constexpr Look kLooks[] = {{"#000000", 'o'}, {"#CC79A7", 's'}, {"#8A8A8A", 'd'},
+constexpr Look kLooks[] = {{"#000000", 'o'}, {"#CC79A7", 's'}, {"#6F6F6F", 'd', "7 6"},
                            {"#D55E00", 't'}, {"#56B4E9", 'o'}, {"#0072B2", 's'},
                            {"#009E73", 'd'}, {"#E69F00", 't'}, {"#7A3E9D", 'o'}};
 
@@ -133,7 +134,7 @@ void draw_panel(const Panel& panel, double left, std::string& svg) {
   svg += fmt::format(
       "<text class=\"label\" text-anchor=\"middle\" transform=\"translate({:.1f} "
       "{:.1f})rotate(-90)\">{}</text>\n",
-      left - 56, (top + bottom) / 2, escaped(panel.y_label));
+      left - 88, (top + bottom) / 2, escaped(panel.y_label));
 
   // The curves, and where each ends.
   std::vector<std::pair<double, std::size_t>> labels;
@@ -147,8 +148,9 @@ void draw_panel(const Panel& panel, double left, std::string& svg) {
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px, py);
       marks += marker(look, px, py);
     }
-    svg += fmt::format("<path class=\"curve\" stroke=\"{}\" d=\"{}\"/>\n<g fill=\"{}\">{}</g>\n", look.color,
-                       path, look.color, marks);
+    svg += fmt::format(
+        "<path class=\"curve\" stroke=\"{}\" stroke-dasharray=\"{}\" d=\"{}\"/>\n<g fill=\"{}\">{}</g>\n",
+        look.color, path, look.color, marks);
     labels.emplace_back(y.at(series.points.back().second), s);
   }
 
