@@ -16,8 +16,8 @@ constexpr double kLeft = 112, kTop = 116, kBottom = 64, kLabelHeight = 17;
 
 struct Look {
   const char* color;
-  char marker;            // o: circle, s: square, d: diamond, t: triangle
-  const char* dash = "";  // lets a curve of the same course shine through
+  char marker;                // o: circle, s: square, d: diamond, t: triangle
+  const char* dash = "none";  // lets a curve of the same course shine through
 };
 constexpr Look kLooks[] = {{"#000000", 'o'}, {"#CC79A7", 's'}, {"#6F6F6F", 'd', "7 6"},
                            {"#D55E00", 't'}, {"#56B4E9", 'o'}, {"#0072B2", 's'},
@@ -150,7 +150,7 @@ void draw_panel(const Panel& panel, double left, std::string& svg) {
     }
     svg += fmt::format(
         "<path class=\"curve\" stroke=\"{}\" stroke-dasharray=\"{}\" d=\"{}\"/>\n<g fill=\"{}\">{}</g>\n",
-        look.color, path, look.color, marks);
+        look.color, look.dash, path, look.color, marks);
     labels.emplace_back(y.at(series.points.back().second), s);
   }
 
@@ -163,9 +163,10 @@ void draw_panel(const Panel& panel, double left, std::string& svg) {
         fmt::format("<path class=\"tie\" stroke=\"{}\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n",
                     look_of(s).color, end_x + 5, end_y, right + 14, at, right + 20, at);
     svg += fmt::format(
-        "<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}<tspan class=\"note\">  "
-        "{}</tspan></text>\n",
-        right + 24, at + 4.5, look_of(s).color, escaped(series.name), escaped(series.note));
+        "<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}<tspan class=\"note\" "
+        "dx=\"9\">N</tspan>"
+        "<tspan class=\"note\" dy=\"-5\" font-size=\"10.5\">{:.2f}</tspan></text>\n",
+        right + 24, at + 4.5, look_of(s).color, escaped(series.name), series.exponent);
   }
 }
 

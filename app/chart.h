@@ -12,7 +12,7 @@ namespace boxwood::app {
 
 struct Series {
   std::string name;
-  std::string note;                               ///< Behind the name at the end of the line.
+  double exponent = 0;                            ///< Of the power of x that fits; stands behind the name.
   std::vector<std::pair<double, double>> points;  ///< All above 0; x ascending.
 };
 

@@ -1,8 +1,8 @@
 #include "ladder.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,20 +12,23 @@
 #include "flat_shapes.h"
 #include "ladder_rays.h"
 #include "ladder_rungs.h"
+#include "numbers.h"
 
 namespace boxwood::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kRungSeconds = 1;      // to trace the scene's rays; brute force gets three times as much
 constexpr double kPointSeconds = 0.12;  // to trace rays at one point of the growth
 constexpr std::size_t kGrowthRays = 20'000, kFewestRays = 16;
-constexpr std::size_t kCountedRays =
-    4'000;  // work is counted over as many, so that counts do not depend on the time
+constexpr std::size_t kCountedRays = 4'000;  // so that counts do not depend on the time
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+/// Time that this program had a processor for. Everything here runs on one thread, so on a machine of its own
+/// it is the time on the wall; on a busy one it does not count what others do.
+double seconds_now() {
+  return double(std::clock()) / CLOCKS_PER_SEC;
+}
+double seconds_since(double start) {
+  return seconds_now() - start;
 }
 
 void tell(const Progress& progress, std::string_view stage, double done) {
@@ -44,7 +47,7 @@ template <class S>
 Timing time_rays(const Rung<S>& rung, std::span<const Ray> rays, std::span<ShapeHit> hits, double seconds,
                  std::size_t fewest) {
   Timing timing;
-  const Clock::time_point start = Clock::now();
+  const double start = seconds_now();
   double spent = 0;
   while (timing.rays < rays.size()) {
     // Batches grow with what is known of the speed.
@@ -60,7 +63,7 @@ Timing time_rays(const Rung<S>& rung, std::span<const Ray> rays, std::span<Shape
   }
   double fastest = spent;
   for (int again = 0; again < 3 && seconds_since(start) + fastest < seconds; ++again) {
-    const Clock::time_point pass = Clock::now();
+    const double pass = seconds_now();
     rung.trace(rays.first(timing.rays), hits.first(timing.rays));
     fastest = std::min(fastest, seconds_since(pass));
   }
@@ -71,7 +74,7 @@ Timing time_rays(const Rung<S>& rung, std::span<const Ray> rays, std::span<Shape
 /// Where a ray hits first, by a tree that is built for it.
 template <class S>
 std::vector<Ray> make_rays(const std::vector<S>& shapes, const SceneDesc& scene, std::size_t count) {
-  const Bvh bvh = build(boxes(shapes));
+  const Bvh bvh = build(boxes(shapes), {.executor = &serial_executor()});
   return ladder_rays(bvh.bounds(), scene.camera, count,
                      [&](const Ray& ray) { return closest_hit(bvh, shapes, ray).t; });
 }
@@ -89,7 +92,7 @@ void climb_scene(const std::vector<S>& shapes, std::span<const Ray> rays, const 
     const bool is_brute_force = r == 0;
     RungReport rung{.name = recipes[r].name};
 
-    const Clock::time_point start = Clock::now();
+    const double start = seconds_now();
     const auto built = recipes[r].build(shapes);
     rung.build_ms = 1e3 * seconds_since(start);
     rung.bytes_per_primitive = double(built->size_bytes()) / double(shapes.size());
@@ -131,7 +134,7 @@ std::string reason_to_stop(const Grower& grower, std::size_t n, double seconds_p
   const double tracing = std::max(kPointSeconds, 1e-9 * last.ns_per_ray * ratio * double(kFewestRays));
   const double seconds = grower.build_seconds * ratio * 1.1 + tracing;
   if (seconds <= seconds_per_point) return {};
-  return fmt::format("stopped before {}: would take about {:.0f} s", n, seconds);
+  return fmt::format("stopped before {}, which would take about {:.0f} s", with_commas(double(n)), seconds);
 }
 
 /// Adds a point to each rung that still takes part.
@@ -148,7 +151,7 @@ void grow_to(const std::vector<S>& shapes, std::span<const Ray> rays, double sec
     grower.report.stopped = reason_to_stop(grower, shapes.size(), seconds_per_point);
     if (!grower.report.stopped.empty()) continue;
 
-    const Clock::time_point start = Clock::now();
+    const double start = seconds_now();
     const auto built = recipes[r].build(shapes);
     grower.build_seconds = seconds_since(start);
     const Timing timing = time_rays(*built, rays, hits, kPointSeconds, kFewestRays);

@@ -114,16 +114,14 @@ std::string growth_words(const LadderReport& report) {
   if (!brute || !sah) return text;
   const double surplus = sah->time_exponent - sah->exponent;
   const double ratio = double(sah->points.back().n) / double(sah->points.front().n);
+  text += fmt::format("  Work grows as N^{:.2f} for brute force, as N^{:.2f} for sweep SAH.\n",
+                      brute->exponent, sah->exponent);
   text += fmt::format(
-      "  N became nearly log N: work grows as N^{:.2f} for brute force, as N^{:.2f} for sweep SAH.\n",
-      brute->exponent, sah->exponent);
-  text += fmt::format(
-      "  Caches add the rest of the time: sweep SAH needs N^{:.2f}, so N^{:.2f} more than its work "
-      "explains;\n"
-      "  a test among {} primitives costs {:.1f} times one among {}, as the tree leaves the caches.\n"
-      "  Brute force reads its shapes in a row, and memory keeps up: N^{:.2f} for work, N^{:.2f} for time.\n",
+      "  Time grows as N^{:.2f} for sweep SAH. The surplus, N^{:.2f}, is what the caches add: a test among\n"
+      "  {} primitives, whose tree lies in memory, costs {:.1f} times one among {}.\n"
+      "  Brute force reads its shapes in a row, which caches foresee: N^{:.2f}.\n",
       sah->time_exponent, surplus, with_commas(double(sah->points.back().n)), std::pow(ratio, surplus),
-      with_commas(double(sah->points.front().n)), brute->exponent, brute->time_exponent);
+      with_commas(double(sah->points.front().n)), brute->time_exponent);
   return text;
 }
 
@@ -154,7 +152,14 @@ std::string ladder_table(const LadderReport& report) {
 
   text += "\nThe worst case, duplicates:N: all triangles in one place, every ray hits\n\n";
   text += growth_table(report.worst_case);
-  text += "\n  No box, plane or cell tells one from another: every structure falls back to N.\n";
+  if (!report.worst_case.empty()) {
+    const auto least = std::min_element(report.worst_case.begin(), report.worst_case.end(),
+                                        [](const auto& a, const auto& b) { return a.exponent < b.exponent; });
+    text += fmt::format(
+        "\n  No box, plane or cell tells one from another: the least exponent is {:.2f}, all fall back to "
+        "N.\n",
+        least->exponent);
+  }
   return text;
 }
 
@@ -201,8 +206,8 @@ std::string ladder_chart(const LadderReport& report) {
   Panel tests{"Boxes and shapes tested per ray", "primitives, N", "tests per ray", false, {}};
   Panel times{"Time per ray, one thread", "primitives, N", "time per ray", true, {}};
   for (const GrowthReport& rung : report.growth) {
-    Series of_tests{rung.rung, fmt::format("N^{:.2f}", rung.exponent), {}};
-    Series of_times{rung.rung, fmt::format("N^{:.2f}", rung.time_exponent), {}};
+    Series of_tests{rung.rung, rung.exponent, {}};
+    Series of_times{rung.rung, rung.time_exponent, {}};
     for (const GrowthPoint& point : rung.points) {
       of_tests.points.emplace_back(double(point.n), point.tests_per_ray);
       of_times.points.emplace_back(double(point.n), point.ns_per_ray);
