@@ -21,7 +21,7 @@ LadderOptions small_ladder() {
   LadderOptions options;
   options.rays = 3'000;
   options.growth_sizes = {100, 1'000, 10'000};
-  options.worst_case_sizes = {50, 500};
+  options.worst_case_sizes = {100, 1'000};
   return options;
 }
 
@@ -58,7 +58,10 @@ TEST(Ladder, FindsTheExponentsOfTheory) {
   EXPECT_LT(find(growth, "binned SAH").exponent,
             0.4);  // below 0.3 over the whole range; here the start is steep
   EXPECT_LT(find(growth, "sweep SAH").exponent, 0.4);
-  for (const GrowthReport& rung : small_report().worst_case) EXPECT_GT(rung.exponent, 0.95) << rung.rung;
+  for (const GrowthReport& rung : small_report().worst_case) {
+    EXPECT_GT(rung.exponent, 0.95) << rung.rung;
+    for (const GrowthPoint& point : rung.points) EXPECT_GE(point.tests_per_ray, double(point.n)) << rung.rung;
+  }
 }
 
 TEST(Ladder, StopsARungThatTakesTooLongAndSaysSo) {
