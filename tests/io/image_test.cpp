@@ -1,12 +1,15 @@
 // What comes back from the pictures that are written, and what is said when they cannot be.
 #include "boxwood/io/image.h"
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include <thread>
 
 #include <sys/resource.h>
 
+#include "boxwood/io/file_bytes.h"
 #include "io/files.h"
 
 namespace boxwood::io {
@@ -98,6 +101,18 @@ TEST_F(Pictures, ExrKeepsEveryFloatAndTheNames) {
     for (int y = 0; y < 7; ++y)
       for (int x = 0; x < 19; ++x)
         EXPECT_EQ(back.at(x, y)[found - back.channel_names.begin()], image.at(x, y)[c]);
+  }
+}
+
+TEST_F(Pictures, EqualPicturesAreEqualFilesWheneverTheyAreWritten) {
+  const auto encoded = [&](const std::string& name) {
+    write_image(path(name), gradient(7, 5, 3));
+    return read_file(path(name));
+  };
+  for (const std::string name : {"a.png", "a.exr", "a.hdr"}) {
+    const std::string first = encoded(name);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // files tell time by the second
+    EXPECT_EQ(first, encoded(name)) << name;
   }
 }
 
