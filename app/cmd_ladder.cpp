@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "boxwood/io/file_bytes.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "ladder.h"
@@ -11,7 +12,6 @@
 #include "output_file.h"
 #include "progress_bar.h"
 #include "scene_source.h"
-#include "text_file.h"
 
 namespace boxwood::app {
 namespace {
@@ -42,8 +42,8 @@ void ladder_command(const LadderArguments& arguments) {
       });
   bar.clear();
 
-  if (!arguments.json.empty()) write_text(arguments.json, ladder_json(report));
-  if (!arguments.plot.empty()) write_text(arguments.plot, ladder_chart(report));
+  if (!arguments.json.empty()) io::write_file(arguments.json, ladder_json(report));
+  if (!arguments.plot.empty()) io::write_file(arguments.plot, ladder_chart(report));
   fmt::print("{}", ladder_table(report));
 }
 

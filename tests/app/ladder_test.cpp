@@ -64,16 +64,16 @@ TEST(Ladder, FindsTheExponentsOfTheory) {
   }
 }
 
-TEST(Ladder, StopsARungThatTakesTooLongAndSaysSo) {
+TEST(Ladder, StopsRungsThatWouldTakeTooLongAndSaysSo) {
   LadderOptions options = small_ladder();
-  options.growth_sizes = {1'000, 300'000};
+  options.growth_sizes = {100, 200, 400};
   options.worst_case_sizes = {};
-  options.seconds_per_point = 0.125;  // more than the tracing, but not the building, of the second size
+  options.seconds_per_point = 0;  // any estimate is too long
   const LadderReport report = climb("soup:100", gallery::make("soup:100"), options, {});
-  const GrowthReport& kd_tree = find(report.growth, "kd-tree");
-  EXPECT_EQ(kd_tree.points.size(), 1u);
-  EXPECT_NE(kd_tree.stopped.find("stopped before 300,000"), std::string::npos) << kd_tree.stopped;
-  EXPECT_EQ(find(report.growth, "brute force").points.size(), 2u);
+  for (const GrowthReport& rung : report.growth) {
+    EXPECT_EQ(rung.points.size(), 1u) << rung.rung;
+    EXPECT_NE(rung.stopped.find("stopped before 200"), std::string::npos) << rung.stopped;
+  }
 }
 
 TEST(Ladder, GrowsTheFamilyOfItsScene) {
