@@ -23,7 +23,8 @@ int main() {
   // Look down onto the row, beside the tip of instance 42.
   const Ray ray{.origin = {168.5f, 10, 0.1f}, .direction = {0, -1, 0}};
   const Hit hit = scene.closest_hit(ray);
-  std::printf("instance %u, triangle %u, at t = %.3f\n", hit.instance_id.value, hit.primitive_id.value, hit.t);
+  std::printf("instance %u, triangle %u, at t = %.3f\n", hit.instance_id.value, hit.primitive_id.value,
+              hit.t);
 
   const SceneStatistics statistics = scene.statistics();
   std::printf("%zu triangles are shown, %zu trees were built\n", statistics.primitives, statistics.trees);

@@ -7,50 +7,50 @@
 // clang-format off: the order carries meaning
 
 // Floor 0. core: vectors, boxes, rays, hits, threads, errors.
-#include "boxwood/core/vec.h"
-#include "boxwood/core/box.h"
 #include "boxwood/core/affine.h"
-#include "boxwood/core/ray.h"
-#include "boxwood/core/id.h"
-#include "boxwood/core/hit.h"
-#include "boxwood/core/prepared_ray.h"
-#include "boxwood/core/random.h"
-#include "boxwood/core/morton.h"
+#include "boxwood/core/box.h"
 #include "boxwood/core/error.h"
-#include "boxwood/core/progress.h"
+#include "boxwood/core/hit.h"
+#include "boxwood/core/id.h"
+#include "boxwood/core/morton.h"
 #include "boxwood/core/parallel.h"
+#include "boxwood/core/prepared_ray.h"
+#include "boxwood/core/progress.h"
 #include "boxwood/core/radix_sort.h"
+#include "boxwood/core/random.h"
+#include "boxwood/core/ray.h"
+#include "boxwood/core/vec.h"
 
 // Floor 1. shape: what is hit.
 #include "boxwood/shape/concept.h"
-#include "boxwood/shape/gate.h"
-#include "boxwood/shape/triangle.h"
-#include "boxwood/shape/sphere.h"
-#include "boxwood/shape/quad.h"
 #include "boxwood/shape/cuboid.h"
 #include "boxwood/shape/disk.h"
+#include "boxwood/shape/gate.h"
 #include "boxwood/shape/instance.h"
+#include "boxwood/shape/quad.h"
 #include "boxwood/shape/shape.h"
+#include "boxwood/shape/sphere.h"
+#include "boxwood/shape/triangle.h"
 
 // Floor 1. tree: what organises it.
 #include "boxwood/tree/bvh.h"
-#include "boxwood/tree/validate.h"
 #include "boxwood/tree/metrics.h"
+#include "boxwood/tree/validate.h"
 
 // Floor 2. build: make a tree.
-#include "boxwood/build/options.h"
 #include "boxwood/build/build.h"
+#include "boxwood/build/options.h"
 
 // Floor 2. query: ask it.
-#include "boxwood/query/traverse.h"
-#include "boxwood/query/closest_hit.h"
-#include "boxwood/query/any_hit.h"
 #include "boxwood/query/all_hits.h"
-#include "boxwood/query/distance.h"
+#include "boxwood/query/any_hit.h"
+#include "boxwood/query/closest_hit.h"
 #include "boxwood/query/closest_point.h"
+#include "boxwood/query/distance.h"
+#include "boxwood/query/group.h"
 #include "boxwood/query/nearest.h"
 #include "boxwood/query/overlap.h"
-#include "boxwood/query/group.h"
+#include "boxwood/query/traverse.h"
 
 // Floor 3. scene: the hall.
 #include "boxwood/scene/description.h"

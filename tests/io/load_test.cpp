@@ -15,7 +15,8 @@ const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 TEST_F(Load, KnowsFilesByTheirEndings) {
   for (const char* name : {"a.obj", "A.OBJ", "b.c.Ply", "dir/x.stl", "x.gltf", "x.GLB", "scene.pbrt"})
     EXPECT_TRUE(is_loadable(name)) << name;
-  for (const char* name : {"", "obj", ".obj", "a.obj.gz", "a.png", "a", "a."}) EXPECT_FALSE(is_loadable(name)) << name;
+  for (const char* name : {"", "obj", ".obj", "a.obj.gz", "a.png", "a", "a."})
+    EXPECT_FALSE(is_loadable(name)) << name;
 }
 
 TEST_F(Load, ChoosesTheReaderInAnyCase) {
@@ -30,7 +31,9 @@ TEST_F(Load, SaysWhichEndingsCanBeRead) {
   }
 }
 
-TEST_F(Load, NamesTheSceneAfterTheFile) { EXPECT_EQ(load(write("my chair.obj", kTriangle)).name, "my chair"); }
+TEST_F(Load, NamesTheSceneAfterTheFile) {
+  EXPECT_EQ(load(write("my chair.obj", kTriangle)).name, "my chair");
+}
 
 TEST_F(Load, NamesTheGeometryAndTheVertexThatIsTooFarAway) {
   const auto file = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng far away\nv 0 1e38 0\nf 1 2 4\n");

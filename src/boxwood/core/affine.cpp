@@ -5,7 +5,8 @@
 namespace boxwood {
 
 Affine3 Affine3::rotation(Vec3 axis, float angle_deg) {
-  const double length = std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
+  const double length =
+      std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
   if (!(length > 0)) throw std::invalid_argument("Affine3::rotation: the axis has no direction");
   const double a = angle_deg * (3.14159265358979323846 / 180), c = std::cos(a), s = std::sin(a);
   const double ux = axis.x / length, uy = axis.y / length, uz = axis.z / length;
@@ -39,7 +40,8 @@ double determinant(const Affine3& m) {
 Affine3 inverse(const Affine3& m) {
   const double det = determinant(m);
   if (!(std::fabs(det) > 0) || !std::isfinite(det) || !is_finite(m.origin))
-    throw std::invalid_argument("inverse: the transform is not finite or flattens space, so it has no inverse");
+    throw std::invalid_argument(
+        "inverse: the transform is not finite or flattens space, so it has no inverse");
 
   // Cofactors over the determinant.
   const double r = 1 / det;
@@ -70,8 +72,8 @@ Box3 transform_box(const Affine3& m, const Box3& box) {
   Box3 out;
   for (int which = 0; which < 8; ++which) out.extend(m.point(box.corner(which)));
 
-  // Each coordinate above is a sum of four rounded terms; four units in the last place of the sum of their sizes
-  // cover it (Higham, Accuracy and Stability, section 3.1).
+  // Each coordinate above is a sum of four rounded terms; four units in the last place of the sum of their
+  // sizes cover it (Higham, Accuracy and Stability, section 3.1).
   const Vec3 p = max(abs(box.lower), abs(box.upper));
   const Vec3 size = abs(m.x) * p.x + abs(m.y) * p.y + abs(m.z) * p.z + abs(m.origin);
   const Vec3 slack = size * 0x1p-21f + splat(0x1p-140f);

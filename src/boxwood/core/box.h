@@ -25,7 +25,9 @@ struct Box3 {
     lower = min(lower, other.lower);
     upper = max(upper, other.upper);
   }
-  constexpr bool is_empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
+  constexpr bool is_empty() const {
+    return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z);
+  }
   constexpr Vec3 extent() const { return upper - lower; }
   /// The middle; halves are added, so that it stays finite for every finite box.
   constexpr Vec3 center() const { return lower * 0.5f + upper * 0.5f; }
@@ -33,9 +35,12 @@ struct Box3 {
     return {which & 1 ? upper.x : lower.x, which & 2 ? upper.y : lower.y, which & 4 ? upper.z : lower.z};
   }
   constexpr bool contains(Vec3 p) const {
-    return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z && p.z <= upper.z;
+    return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z &&
+           p.z <= upper.z;
   }
-  constexpr bool contains(const Box3& b) const { return b.is_empty() || (contains(b.lower) && contains(b.upper)); }
+  constexpr bool contains(const Box3& b) const {
+    return b.is_empty() || (contains(b.lower) && contains(b.upper));
+  }
   constexpr bool overlaps(const Box3& b) const {  // touching counts
     return lower.x <= b.upper.x && b.lower.x <= upper.x && lower.y <= b.upper.y && b.lower.y <= upper.y &&
            lower.z <= b.upper.z && b.lower.z <= upper.z;
@@ -48,7 +53,9 @@ constexpr Box3 unite(Box3 a, const Box3& b) {
   return a;
 }
 
-constexpr Box3 intersect(const Box3& a, const Box3& b) { return {max(a.lower, b.lower), min(a.upper, b.upper)}; }
+constexpr Box3 intersect(const Box3& a, const Box3& b) {
+  return {max(a.lower, b.lower), min(a.upper, b.upper)};
+}
 
 /// Half of the surface: the measure that the surface area heuristic compares. 0 for an empty box. In double,
 /// because the product of two large extents overflows a float.

@@ -9,8 +9,8 @@
 
 namespace boxwood {
 
-/// A file that cannot be used. what() reads "path:place: what is wrong", with the place (a line, a byte, an element)
-/// where one is known.
+/// A file that cannot be used. what() reads "path:place: what is wrong", with the place (a line, a byte, an
+/// element) where one is known.
 class FileError : public std::runtime_error {
  public:
   FileError(const std::string& path, const std::string& place, const std::string& message)

@@ -1,7 +1,7 @@
 // id.h: what does a user call a thing by?
 //
-// A stable name that is handed to users is an Id, and each kind is a type of its own. A position in one of our own
-// arrays is a plain std::uint32_t whose name ends in `_index`; the two never convert silently.
+// A stable name that is handed to users is an Id, and each kind is a type of its own. A position in one of
+// our own arrays is a plain std::uint32_t whose name ends in `_index`; the two never convert silently.
 #pragma once
 
 #include <compare>
@@ -9,7 +9,8 @@
 
 namespace boxwood {
 
-/// A stable name; `value` counts from 0 in the order in which the user gave the things. Default: no thing at all.
+/// A stable name; `value` counts from 0 in the order in which the user gave the things. Default: no thing at
+/// all.
 template <class Tag>
 struct Id {
   static constexpr std::uint32_t kNone = 0xffffffffu;

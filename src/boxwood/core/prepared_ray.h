@@ -1,22 +1,23 @@
 // prepared_ray.h: what does a ray need to know before it meets boxes and triangles?
 //
-// Everything that depends on the ray alone, or on the ray and the bounds of what it will meet, is worked out once.
+// Everything that depends on the ray alone, or on the ray and the bounds of what it will meet, is worked out
+// once.
 //
-// Boxes. A box test must never lose a hit that a leaf test would report, and a leaf test has rounding errors of its
-// own: the watertight triangle test moves a vertex by up to 6uR (u = 2^-24, R = the largest distance, in the max norm,
-// from the origin to a corner of the bounds). So the slabs are widened by constants of the ray and a box costs one
-// multiply and one add a plane:
+// Boxes. A box test must never lose a hit that a leaf test would report, and a leaf test has rounding errors
+// of its own: the watertight triangle test moves a vertex by up to 6uR (u = 2^-24, R = the largest distance,
+// in the max norm, from the origin to a corner of the bounds). So the slabs are widened by constants of the
+// ray and a box costs one multiply and one add a plane:
 //
 //     near plane: t = plane * r - (o*r + slack)      r = 1/d       slack = |r| (12 u R + 8 u |o|)
 //     far plane:  t = plane * r - (o*r - slack)      |d| is taken as at least 2^-30 of the largest component
 //
-// Every operation rounds monotonically, so the interval of a box lies inside the interval of any box around it.
-// Queries lean on that law: a crossing is reported at a t inside the interval of its own shape's box (see
-// shape/gate.h), and therefore no box around it can be culled wrongly. Compare Ize, "Robust BVH Ray Traversal",
-// JCGT 2013, which is conservative against exact slabs only and divides by zero components.
+// Every operation rounds monotonically, so the interval of a box lies inside the interval of any box around
+// it. Queries lean on that law: a crossing is reported at a t inside the interval of its own shape's box (see
+// shape/gate.h), and therefore no box around it can be culled wrongly. Compare Ize, "Robust BVH Ray
+// Traversal", JCGT 2013, which is conservative against exact slabs only and divides by zero components.
 //
-// Triangles. The shear of Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: the axes are
-// permuted so that axis_z is the direction's largest, and a shear makes the ray the z axis.
+// Triangles. The shear of Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: the axes
+// are permuted so that axis_z is the direction's largest, and a shear makes the ray the z axis.
 #pragma once
 
 #include "boxwood/core/ray.h"
@@ -52,8 +53,8 @@ class PreparedRay {
 
   bool is_valid() const { return t_max > -kInfinity && t_max >= t_min; }
 
-  /// The interval between two planes across `axis`, lower <= upper, widened as the file's head says. Both planes lie
-  /// within the bounds that the ray was prepared for.
+  /// The interval between two planes across `axis`, lower <= upper, widened as the file's head says. Both
+  /// planes lie within the bounds that the ray was prepared for.
   Interval slab(int axis, float lower, float upper) const {
     const float near_plane = backward_[axis] ? upper : lower;
     const float far_plane = backward_[axis] ? lower : upper;
@@ -109,7 +110,8 @@ class PreparedRay {
       const float r = 1.0f / d;
       backward_[k] = d < 0;
       // The two tiny terms cover what underflows: positions before, and t after the multiplication.
-      const float slack = std::fabs(r) * (12 * u * reach + 8 * u * std::fabs(origin[k]) + 0x1p-140f) + 0x1p-140f;
+      const float slack =
+          std::fabs(r) * (12 * u * reach + 8 * u * std::fabs(origin[k]) + 0x1p-140f) + 0x1p-140f;
       inverse_[k] = r;
       near_shift_[k] = -(origin[k] * r) - slack;
       far_shift_[k] = -(origin[k] * r) + slack;

@@ -1,7 +1,7 @@
 // random.h: where do repeatable random numbers come from?
 //
-// PCG32 (O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random Number
-// Generation", 2014): the same numbers on every machine, which std:: distributions do not promise.
+// PCG32 (O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
+// Number Generation", 2014): the same numbers on every machine, which std:: distributions do not promise.
 #pragma once
 
 #include "boxwood/core/vec.h"
@@ -25,7 +25,9 @@ class Random {
     return (shifted >> turn) | (shifted << ((32 - turn) & 31));
   }
   /// In [0, n); n > 0. The bias, below n / 2^32, does not matter for what it is used for.
-  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>((std::uint64_t(next()) * n) >> 32); }
+  std::uint32_t below(std::uint32_t n) {
+    return static_cast<std::uint32_t>((std::uint64_t(next()) * n) >> 32);
+  }
   /// In [0, 1).
   float uniform() { return static_cast<float>(next() >> 8) * 0x1p-24f; }
   float uniform(float a, float b) { return a + (b - a) * uniform(); }

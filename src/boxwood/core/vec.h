@@ -26,41 +26,93 @@ struct Vec3 {
   friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
 };
 
-constexpr Vec3 splat(float s) { return {s, s, s}; }
+constexpr Vec3 splat(float s) {
+  return {s, s, s};
+}
 
-constexpr Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-constexpr Vec3 operator*(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-constexpr Vec3 operator/(Vec3 a, Vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
-constexpr Vec3 operator*(Vec3 a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-constexpr Vec3 operator*(float s, Vec3 a) { return a * s; }
-constexpr Vec3 operator/(Vec3 a, float s) { return {a.x / s, a.y / s, a.z / s}; }
-constexpr Vec3& operator+=(Vec3& a, Vec3 b) { return a = a + b; }
-constexpr Vec3& operator-=(Vec3& a, Vec3 b) { return a = a - b; }
-constexpr Vec3& operator*=(Vec3& a, Vec3 b) { return a = a * b; }
-constexpr Vec3& operator*=(Vec3& a, float s) { return a = a * s; }
+constexpr Vec3 operator-(Vec3 a) {
+  return {-a.x, -a.y, -a.z};
+}
+constexpr Vec3 operator+(Vec3 a, Vec3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+constexpr Vec3 operator-(Vec3 a, Vec3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+constexpr Vec3 operator*(Vec3 a, Vec3 b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+constexpr Vec3 operator/(Vec3 a, Vec3 b) {
+  return {a.x / b.x, a.y / b.y, a.z / b.z};
+}
+constexpr Vec3 operator*(Vec3 a, float s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+constexpr Vec3 operator*(float s, Vec3 a) {
+  return a * s;
+}
+constexpr Vec3 operator/(Vec3 a, float s) {
+  return {a.x / s, a.y / s, a.z / s};
+}
+constexpr Vec3& operator+=(Vec3& a, Vec3 b) {
+  return a = a + b;
+}
+constexpr Vec3& operator-=(Vec3& a, Vec3 b) {
+  return a = a - b;
+}
+constexpr Vec3& operator*=(Vec3& a, Vec3 b) {
+  return a = a * b;
+}
+constexpr Vec3& operator*=(Vec3& a, float s) {
+  return a = a * s;
+}
 
-constexpr float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr float dot(Vec3 a, Vec3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 constexpr Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-constexpr float length_squared(Vec3 a) { return dot(a, a); }
-inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
+constexpr float length_squared(Vec3 a) {
+  return dot(a, a);
+}
+inline float length(Vec3 a) {
+  return std::sqrt(dot(a, a));
+}
 /// The unit vector along `a`; NaN where `a` has no direction.
-inline Vec3 normalize(Vec3 a) { return a / length(a); }
+inline Vec3 normalize(Vec3 a) {
+  return a / length(a);
+}
 
 // Written as selects, so that the result is defined for NaN and -0 too: `b` unless `a` is strictly better.
-constexpr float min(float a, float b) { return a < b ? a : b; }
-constexpr float max(float a, float b) { return a > b ? a : b; }
-constexpr Vec3 min(Vec3 a, Vec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
-constexpr Vec3 max(Vec3 a, Vec3 b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
-constexpr float max_component(Vec3 a) { return max(a.x, max(a.y, a.z)); }
-constexpr float min_component(Vec3 a) { return min(a.x, min(a.y, a.z)); }
-inline Vec3 abs(Vec3 a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
-inline bool is_finite(Vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+constexpr float min(float a, float b) {
+  return a < b ? a : b;
+}
+constexpr float max(float a, float b) {
+  return a > b ? a : b;
+}
+constexpr Vec3 min(Vec3 a, Vec3 b) {
+  return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
+}
+constexpr Vec3 max(Vec3 a, Vec3 b) {
+  return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
+}
+constexpr float max_component(Vec3 a) {
+  return max(a.x, max(a.y, a.z));
+}
+constexpr float min_component(Vec3 a) {
+  return min(a.x, min(a.y, a.z));
+}
+inline Vec3 abs(Vec3 a) {
+  return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)};
+}
+inline bool is_finite(Vec3 a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 /// 0, 1 or 2: the axis of the largest component; the first one when equal.
-constexpr int longest_axis(Vec3 a) { return a.x >= a.y ? (a.x >= a.z ? 0 : 2) : (a.y >= a.z ? 1 : 2); }
+constexpr int longest_axis(Vec3 a) {
+  return a.x >= a.y ? (a.x >= a.z ? 0 : 2) : (a.y >= a.z ? 1 : 2);
+}
 
 /// Two unit vectors that form a right-handed orthonormal basis with the unit vector `n`.
 /// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.

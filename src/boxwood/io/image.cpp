@@ -187,7 +187,8 @@ void write_image(const std::filesystem::path& path, const Image& image) {
     spec.channelnames = image.channel_names;
   spec.attribute("oiio:ColorSpace", is_png ? "sRGB" : "Linear");
   if (is_png) spec.attribute("oiio:UnassociatedAlpha", 1);
-  // OpenImageIO puts the time of writing into an EXR unless one is given; equal pictures are to be equal files.
+  // OpenImageIO puts the time of writing into an EXR unless one is given; equal pictures are to be equal
+  // files.
   spec.attribute("DateTime", "1970:01:01 00:00:00");
 
   // Encode into memory, so that a full disk meets one writer that knows how to clean up.
