@@ -2,8 +2,8 @@
 """check_layers.py: does every include look down the stairs, never up?
 
 layers.txt lists each room and the rooms that it may include besides itself. Every `#include "boxwood/<room>/..."` under
-src/boxwood is held to it, and so is the order of the umbrella header, which is the floor plan. The doors (app/,
-python/, web/), tests, examples and benchmarks may include anything.
+src/boxwood is held to it, and so is the order of the umbrella header, which is the floor plan. The program
+(app/), tests, examples and benchmarks may include anything.
 
 Usage: check_layers.py [ROOT]. Prints file:line for each violation and exits with 1 when there is one.
 """
