@@ -1,6 +1,7 @@
 // What is written stands there whole, or nothing has changed.
 #include "boxwood/io/file_bytes.h"
 
+#include "boxwood/core/error.h"
 #include "io/files.h"
 
 namespace boxwood::io {
