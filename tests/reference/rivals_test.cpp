@@ -96,9 +96,11 @@ TEST(Rivals, AgreeWithBruteForceOnCuboids) {
 
 TEST(Rivals, AgreeWithBruteForceOnMixedShapes) {
   World<AnyShape> mixed{"mixed", {}};
+  const auto balls = sphere_worlds();
+  const auto blocks = cuboid_worlds();
   for (const Triangle& t : test::triangles(test::triangle_soup(200))) mixed.shapes.emplace_back(t);
-  for (const Sphere& s : sphere_worlds()[2].shapes) mixed.shapes.emplace_back(s);
-  for (const Cuboid& c : cuboid_worlds()[1].shapes) mixed.shapes.emplace_back(c);
+  for (const Sphere& s : balls[2].shapes) mixed.shapes.emplace_back(s);
+  for (const Cuboid& c : blocks[1].shapes) mixed.shapes.emplace_back(c);
   expect_all_equal(std::vector{mixed});
 }
 
