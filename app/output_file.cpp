@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "boxwood/core/error.h"
+#include "boxwood/io/file_bytes.h"
 
 namespace boxwood::app {
 
@@ -15,8 +16,13 @@ void check_writable(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
     throw FileError(path.string(), "", "this is a folder, expected the name of a file to write");
+  if (io::is_device_or_pipe(path)) return;  // Takes what it is given; asking would already be writing.
 
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  // A link's file is written where it is.
+  std::error_code is_new;
+  const std::filesystem::path target = std::filesystem::canonical(path, is_new);
+  const std::filesystem::path& file_path = is_new ? path : target;
+  const std::filesystem::path folder = file_path.has_parent_path() ? file_path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, ignored))
     throw FileError(path.string(), "",
                     "cannot be written, because the folder " + folder.string() + " does not exist");

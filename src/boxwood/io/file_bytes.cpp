@@ -40,6 +40,19 @@ std::string read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  return text;
+}
+
+bool is_device_or_pipe(const std::filesystem::path& path) {
+  using std::filesystem::file_type;
+  std::error_code ignored;
+  const file_type type = std::filesystem::status(path, ignored).type();
+  return type == file_type::character || type == file_type::block || type == file_type::fifo;
+}
+
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
@@ -48,10 +61,16 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
   if (!std::filesystem::is_directory(folder, error))
     throw FileError(path.string(), "", "cannot be written: there is no folder " + folder.string());
 
+  // A rename would put a plain file in the place of a device or a pipe: /dev/null would be gone.
+  const bool is_stream = is_device_or_pipe(path);
+  // It would also cut a link off from the file that it names.
+  std::filesystem::path target = is_stream ? path : std::filesystem::canonical(path, error);
+  if (error) target = path;  // There is no such file yet.
+
   // A name of our own, even when several threads and programs write the same file at once.
   static std::atomic<unsigned> serial{0};
-  std::filesystem::path part = path;
-  part += ".part" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
+  std::filesystem::path part = target;
+  if (!is_stream) part += ".part" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
 
   errno = 0;
   std::ofstream stream(part, std::ios::binary);
@@ -60,12 +79,12 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
   std::string reason;
   if (!stream) {
     reason = errno != 0 ? std::strerror(errno) : "the disk took only a part of it";
-  } else {
-    std::filesystem::rename(part, path, error);
+  } else if (!is_stream) {
+    std::filesystem::rename(part, target, error);
     if (error) reason = error.message();
   }
   if (!reason.empty()) {
-    std::filesystem::remove(part, error);
+    if (!is_stream) std::filesystem::remove(part, error);
     throw FileError(path.string(), "", "cannot be written: " + reason);
   }
 }

@@ -15,8 +15,15 @@ namespace boxwood::io {
 /// be read.
 std::string read_file(const std::filesystem::path& path);
 
+/// The text without the UTF-8 byte order mark that some editors put before it.
+std::string_view without_byte_order_mark(std::string_view text);
+
+/// Whether `path` names something that takes bytes and keeps no file, such as /dev/null or a named pipe.
+bool is_device_or_pipe(const std::filesystem::path& path);
+
 /// Writes the bytes beside `path` and renames them into place, so that `path` is never a partial file and
-/// keeps what it was when something fails. Throws FileError.
+/// keeps what it was when something fails. A link stays and the file behind it is replaced; devices and pipes
+/// are written to. Throws FileError.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// The ending of a file name in lower case with its dot, such as ".obj"; empty where there is none.
