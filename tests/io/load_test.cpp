@@ -53,5 +53,27 @@ TEST_F(Load, ReadsPathsWithSpacesAndAccents) {
   EXPECT_EQ(defined_primitive_count(load(write("Möbel und Ähnliches/Stühle 2.obj", kTriangle))), 1u);
 }
 
+TEST_F(Load, ReadsTextBehindAByteOrderMark) {
+  const std::string mark = "\xef\xbb\xbf";
+  const auto first_material = [&](const std::filesystem::path& file) {
+    const SceneDesc desc = load(file);
+    EXPECT_TRUE(desc.warnings.empty()) << file << ": " << desc.warnings.front();
+    return desc.materials.empty() ? "" : desc.materials.back().name;
+  };
+  write("red.mtl", mark + "newmtl red\nKd 1 0 0\n");
+  EXPECT_EQ(first_material(write("a.obj", mark + "mtllib red.mtl\nusemtl red\n" + kTriangle)), "red");
+  EXPECT_EQ(defined_primitive_count(load(write("b.obj", mark + kTriangle))), 1u);
+  for (const auto& [name, text] :
+       {std::pair{"a.ply",
+                  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                  "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                  "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+        {"a.stl",
+         "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+         "endloop\nendfacet\nendsolid\n"},
+        {"a.pbrt", "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n"}})
+    EXPECT_EQ(defined_primitive_count(load(write(name, mark + text))), 1u) << name;
+}
+
 }  // namespace
 }  // namespace boxwood::io

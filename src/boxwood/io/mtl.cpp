@@ -66,7 +66,7 @@ Material to_material(const tinyobj::material_t& source) {
 void load_mtl(const std::filesystem::path& path, SceneDesc& desc, std::map<std::string, MaterialId>& ids) {
   std::vector<tinyobj::material_t> materials;
   try {
-    std::istringstream stream(read_file(path));
+    std::istringstream stream(std::string(without_byte_order_mark(read_file(path))));
     std::map<std::string, int> names;
     std::string warning, error;
     tinyobj::LoadMtl(&names, &materials, &stream, &warning, &error);

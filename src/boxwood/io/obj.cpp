@@ -238,7 +238,7 @@ class ObjReader {
 
 SceneDesc load_obj(const std::filesystem::path& path, Executor&) {
   const std::string text = read_file(path);
-  return ObjReader(path, text).read();
+  return ObjReader(path, without_byte_order_mark(text)).read();
 }
 
 }  // namespace boxwood::io

@@ -81,11 +81,11 @@ Parser::Parser(const std::filesystem::path& path) : folder_(path.parent_path()) 
 }
 
 void Parser::open(const std::filesystem::path& path) {
-  std::string bytes = read_file(path);
+  const std::string bytes = read_file(path);
   const std::string& name = paths_.emplace_back(path.string());
   std::error_code ignored;
   files_.push_back({std::filesystem::weakly_canonical(path, ignored),
-                    std::make_unique<Tokenizer>(name, std::move(bytes)),
+                    std::make_unique<Tokenizer>(name, std::string(without_byte_order_mark(bytes))),
                     {}});
   place_ = {&name, 1};
   files_.back().token = files_.back().tokenizer->next();

@@ -283,7 +283,8 @@ class MeshReader {
 }  // namespace
 
 TriangleMesh read_ply_mesh(const std::filesystem::path& path) {
-  const std::string name = path.string(), bytes = read_file(path);
+  const std::string name = path.string(), file = read_file(path);
+  const std::string_view bytes = without_byte_order_mark(file);
   const Header header = ply::read_header(bytes, name);
   constexpr bool kIsBigHere = std::endian::native == std::endian::big;
   TriangleMesh mesh;

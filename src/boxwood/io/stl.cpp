@@ -146,7 +146,8 @@ SceneDesc read_text(std::string_view bytes, const std::string& path) {
 
 SceneDesc load_stl(const std::filesystem::path& path, Executor&) {
   const std::string name = path.string(), bytes = read_file(path);
-  return is_text(bytes) ? read_text(bytes, name) : read_binary(bytes, name);
+  const std::string_view text = without_byte_order_mark(bytes);
+  return is_text(text) ? read_text(text, name) : read_binary(bytes, name);
 }
 
 }  // namespace boxwood::io
