@@ -297,25 +297,24 @@ void info_command(const InfoArguments& arguments) {
 
 void add_info(CLI::App& program) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* command =
-      program.add_subcommand("info", "What is in a scene, what its trees look like, and what it costs");
+  CLI::App* command = program.add_subcommand("info", "What is in a scene, its trees, and what it costs");
   command
       ->add_option("SCENE", arguments->scene,
-                   "A file (.obj .ply .stl .gltf .glb .pbrt), or a scene that the program makes itself")
+                   "A file (.obj .ply .stl .gltf .glb .pbrt) or a\n"
+                   "scene that the program makes itself, see below")
       ->capture_default_str();
   command->add_option("--json", arguments->json, "Write it to this file as JSON, too");
   command->add_option("--threads", arguments->threads, "How many threads work; 0 means all")
       ->capture_default_str()
-      ->check(CLI::Range(0, 4096));
-  command->add_option("--build", arguments->build, "How much care the tree gets: fast, balanced, best")
+      ->check(CLI::Range(0, 4096).description(""));
+  command->add_option("--build", arguments->build, "Care that the tree gets: fast, balanced, best")
       ->capture_default_str()
-      ->check(CLI::IsMember({"fast", "balanced", "best"}));
+      ->check(CLI::IsMember({"fast", "balanced", "best"}).description(""));
   command->add_flag("--quiet", arguments->is_quiet, "No progress");
   command->footer(gallery_help() +
-                  "\nSAH cost: the expected work of a random ray, in shape tests. EPO: how much of other "
-                  "surfaces lies inside a"
-                  "\nnode's box, in the same unit; both are better when smaller. EPO is left out (-) "
-                  "where\nnearly everything overlaps.\n"
+                  "\nSAH cost: the expected work of a random ray, in shape tests. EPO: how much of\n"
+                  "other surfaces lies inside a node's box, in the same unit; both are better when\n"
+                  "smaller. EPO is left out (-) where nearly everything overlaps.\n"
                   "\nExamples:\n"
                   "  boxwood info\n"
                   "  boxwood info bunny.obj --build best\n"

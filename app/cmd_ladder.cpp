@@ -51,22 +51,22 @@ void ladder_command(const LadderArguments& arguments) {
 
 void add_ladder(CLI::App& program) {
   const auto arguments = std::make_shared<LadderArguments>();
-  CLI::App* command =
-      program.add_subcommand("ladder", "Climb from brute force to the best tree, rung by rung, measured");
+  CLI::App* command = program.add_subcommand("ladder", "Climb from brute force to the best tree, measured");
   command
-      ->add_option("SCENE", arguments->scene, "A file, or the name of a scene that the program makes itself")
+      ->add_option("SCENE", arguments->scene,
+                   "A file (.obj .ply .stl .gltf .glb .pbrt) or a\n"
+                   "scene that the program makes itself, see below")
       ->capture_default_str();
   command->add_option("--json", arguments->json, "Write the numbers to this file");
-  command->add_option("--plot", arguments->plot, "Draw the growth of work and time into this SVG file");
+  command->add_option("--plot", arguments->plot, "Draw the growth of work and time as SVG");
   command->add_option("--rays", arguments->rays, "How many rays the scene is asked with")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100'000'000));
-  command->add_flag("--quiet", arguments->is_quiet, "No progress; only the table, warnings and errors");
+      ->check(CLI::Range(1, 100'000'000).description(""));
+  command->add_flag("--quiet", arguments->is_quiet, "No progress; the table, warnings and errors");
   command->footer(
-      "Every rung answers the same rays, on one thread, and is compared with brute force to the bit. Then "
-      "all are\n"
-      "climbed again over 100 to 1,000,000 primitives, and over the worst case. Takes about half a "
-      "minute.\n\n" +
+      "Every rung answers the same rays, on one thread, and is compared with brute\n"
+      "force to the bit. Then all are climbed again over 100 to 1,000,000 primitives,\n"
+      "and over the worst case. Takes about half a minute.\n\n" +
       gallery_help() +
       "\nExamples:\n"
       "  boxwood ladder\n"

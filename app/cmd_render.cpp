@@ -14,6 +14,7 @@
 #include "boxwood/render/render.h"
 #include "boxwood/scene/scene.h"
 #include "commands.h"
+#include "console.h"
 #include "interrupt.h"
 #include "output_file.h"
 #include "progress_bar.h"
@@ -135,14 +136,13 @@ void render_command(const RenderArguments& arguments) {
 
   io::write_image(arguments.output, picture_for(ending_of(arguments.output), result.image, options.mode));
   if (result.dropped_samples > 0)
-    fmt::print(stderr, "boxwood: warning: {} samples were not finite and were left out\n",
-               result.dropped_samples);
+    print_error("boxwood: warning: {} samples were not finite and were left out\n", result.dropped_samples);
   if (!result.is_complete)
     throw std::runtime_error("stopped; " + arguments.output + " shows what there was so far");
   if (!arguments.is_quiet)
-    fmt::print(stderr, "wrote {}: {}x{}, {}, {} samples; {} rays at {:.2f} Mrays/s; {:.1f} s in all\n",
-               arguments.output, options.width, options.height, arguments.mode, options.samples, result.rays,
-               rate, seconds_since(start));
+    print_error("wrote {}: {}x{}, {}, {} samples; {} rays at {:.2f} Mrays/s; {:.1f} s in all\n",
+                arguments.output, options.width, options.height, arguments.mode, options.samples, result.rays,
+                rate, seconds_since(start));
 }
 
 }  // namespace
@@ -152,44 +152,45 @@ void add_render(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Make a picture of a scene");
   command
       ->add_option("SCENE", arguments->scene,
-                   "A file (.obj .ply .stl .gltf .glb .pbrt), or a scene that the program makes itself")
+                   "A file (.obj .ply .stl .gltf .glb .pbrt) or a\n"
+                   "scene that the program makes itself, see below")
       ->capture_default_str();
-  command
-      ->add_option("-o,--output", arguments->output,
-                   "The picture: .png, or .exr and .hdr for unclamped light")
+  command->add_option("-o,--output", arguments->output, "The picture: .png; .exr or .hdr keep all light")
       ->capture_default_str()
       ->check([](const std::string& path) {
         const std::string ending = ending_of(path);
         const bool is_known = ending == ".png" || ending == ".exr" || ending == ".hdr";
         return is_known ? std::string() : path + " does not end in .png, .exr or .hdr";
       });
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels [the file's own, else 1280x720]")
+  command
+      ->add_option("--size", arguments->size,
+                   "WIDTHxHEIGHT in pixels; without it the file's own,\nelse 1280x720")
       ->check([](const std::string& text) {
         return parse_size(text) ? std::string() : "'" + text + "' is not a size like 1280x720";
       });
   command->add_option("--samples", arguments->samples, "Rays through each pixel; powers of two look best")
       ->capture_default_str()
-      ->check(CLI::Range(1, render::kMaxSamples));
-  command->add_option("--mode", arguments->mode, "path (light), color, normal, depth, occlusion, cost")
+      ->check(CLI::Range(1, render::kMaxSamples).description(""));
+  command->add_option("--mode", arguments->mode, "path (light), color, normal, depth, occlusion,\ncost")
       ->capture_default_str()
-      ->check(CLI::IsMember({"path", "color", "normal", "depth", "occlusion", "cost"}));
+      ->check(CLI::IsMember({"path", "color", "normal", "depth", "occlusion", "cost"}).description(""));
   command
       ->add_option("--threads", arguments->threads,
-                   "How many threads work; 0 means all. The picture is the same")
+                   "How many threads work; 0 means all. The picture is\nthe same")
       ->capture_default_str()
-      ->check(CLI::Range(0, 4096));
-  command->add_option("--build", arguments->build, "How much care the tree gets: fast, balanced, best")
+      ->check(CLI::Range(0, 4096).description(""));
+  command->add_option("--build", arguments->build, "Care that the tree gets: fast, balanced, best")
       ->capture_default_str()
-      ->check(CLI::IsMember({"fast", "balanced", "best"}));
+      ->check(CLI::IsMember({"fast", "balanced", "best"}).description(""));
   command->add_flag("--quiet", arguments->is_quiet, "No progress; only warnings and errors");
   command->footer(gallery_help() +
                   "\nExamples:\n"
                   "  boxwood render -o picture.png\n"
                   "  boxwood render bunny.obj -o bunny.png --size 800x800 --samples 256\n"
                   "  boxwood render kitchen/scene.pbrt -o cost.png --mode cost --samples 4\n"
-                  "  boxwood render city:1000 -o depth.exr --mode depth --samples 1    distances as floats\n"
-                  "\nCtrl-C writes the picture as far as it got (exit code 1); a second Ctrl-C ends the "
-                  "program at once.");
+                  "  boxwood render city:1000 -o depth.exr --mode depth --samples 1\n"
+                  "\nCtrl-C writes the picture as far as it got (exit code 1); a second Ctrl-C ends\n"
+                  "the program at once.");
   command->callback([arguments] { render_command(*arguments); });
 }
 

@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "boxwood/core/error.h"
 #include "commands.h"
+#include "console.h"
 
 namespace {
 
@@ -21,7 +21,7 @@ int complain(std::string message, int exit_code) {
   while (!message.empty() && message.back() == '\n') message.pop_back();
   for (char& c : message)
     if (c == '\n' || c == '\r') c = ' ';
-  fmt::print(stderr, "boxwood: {}\n", message);
+  boxwood::app::print_error("boxwood: {}\n", message);
   return exit_code;
 }
 
@@ -34,21 +34,36 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
   return argv[1];
 }
 
+/// Does what was asked. --help and --version come as exceptions, and what they print is output too.
+void run(CLI::App& program, int argc, char** argv) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    std::ostringstream text;
+    program.exit(asked, text);
+    std::fputs(text.str().c_str(), stdout);
+  }
+  boxwood::app::check_output_arrived();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  boxwood::app::open_closed_streams();
   CLI::App program{
-      "Boxwood ray traces scenes through bounding volume hierarchies, and shows what that saves."};
+      "Boxwood ray traces scenes through bounding volume hierarchies,\n"
+      "and shows what that saves."};
   program.name("boxwood");
   program.set_version_flag("--version", "boxwood " BOXWOOD_VERSION);
   program.require_subcommand(1);
   program.footer(
       "Examples:\n"
-      "  boxwood render -o picture.png               a picture of the scene that the program brings along\n"
-      "  boxwood render bunny.obj -o bunny.png       a picture of a file\n"
-      "  boxwood info bunny.obj                      what is in it, and what its tree looks like\n"
-      "  boxwood ladder                              from brute force to the best tree, measured\n"
-      "'boxwood COMMAND --help' tells more. Exit codes: 0 done, 1 failed, 2 wrong usage.");
+      "  boxwood render -o picture.png           a picture of the program's own scene\n"
+      "  boxwood render bunny.obj -o bunny.png   a picture of a file\n"
+      "  boxwood info bunny.obj                  what is in it, what its tree is like\n"
+      "  boxwood ladder                          from brute force to the best tree\n"
+      "'boxwood COMMAND --help' tells more.\n"
+      "Exit codes: 0 done, 1 failed, 2 wrong usage.");
   boxwood::app::add_render(program);
   boxwood::app::add_info(program);
   boxwood::app::add_ladder(program);
@@ -57,10 +72,8 @@ int main(int argc, char** argv) {
     return complain("there is no command '" + name + "' (see boxwood --help)", kWrongUsage);
 
   try {
-    program.parse(argc, argv);
+    run(program, argc, argv);
     return 0;
-  } catch (const CLI::Success& asked) {  // --help and --version
-    return program.exit(asked);
   } catch (const CLI::ParseError& error) {
     return complain(std::string(error.what()) + " (see boxwood --help)", kWrongUsage);
   } catch (const boxwood::Cancelled&) {

@@ -8,6 +8,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "console.h"
+
 namespace boxwood::app {
 namespace {
 
@@ -53,22 +55,21 @@ void ProgressBar::update(std::string_view stage, double done, std::string_view d
     tail += fmt::format("  {} left", format_duration(elapsed / done * (1 - done)));
 
   if (style_ == Style::lines) {
-    fmt::print(stderr, "{} {}\n", stage_, tail);
+    print_error("{} {}\n", stage_, tail);
     return;
   }
   // The bar takes what the words leave of the line.
   const std::size_t words = stage_.size() + tail.size() + 6, columns = terminal_width();
   const std::size_t cells = columns > words + 5 ? std::min<std::size_t>(columns - words, 40) : 0;
   const auto full = static_cast<std::size_t>(done * static_cast<double>(cells));
-  fmt::print(stderr, "\r\033[K{} [{}{}] {}", stage_, std::string(full, '#'), std::string(cells - full, '.'),
-             tail);
+  print_error("\r\033[K{} [{}{}] {}", stage_, std::string(full, '#'), std::string(cells - full, '.'), tail);
   std::fflush(stderr);
   is_drawn_ = true;
 }
 
 void ProgressBar::clear() {
   if (!is_drawn_) return;
-  fmt::print(stderr, "\r\033[K");
+  print_error("\r\033[K");
   std::fflush(stderr);
   is_drawn_ = false;
 }

@@ -7,9 +7,12 @@
 
 #include "boxwood/gallery/gallery.h"
 #include "boxwood/io/load.h"
+#include "console.h"
 
 namespace boxwood::app {
 namespace {
+
+constexpr std::size_t kMaxWarningsShown = 20;  // enough to see what is wrong with the file
 
 /// How a user writes the entry: "stilllife", or "spheres:N" when it has a size.
 std::string written(const gallery::Entry& entry) {
@@ -40,14 +43,18 @@ BuildOptions build_options(const std::string& preset) {
 }
 
 void print_warnings(const SceneDesc& desc) {
-  for (const std::string& warning : desc.warnings) fmt::print(stderr, "boxwood: warning: {}\n", warning);
+  const std::size_t shown =
+      desc.warnings.size() <= kMaxWarningsShown + 1 ? desc.warnings.size() : kMaxWarningsShown;
+  for (std::size_t i = 0; i < shown; ++i) print_error("boxwood: warning: {}\n", desc.warnings[i]);
+  if (shown < desc.warnings.size())
+    print_error("boxwood: warning: and {} more like these\n", desc.warnings.size() - shown);
 }
 
 std::string gallery_help() {
-  std::string help = "Scenes that the program makes itself:\n";
+  std::string help = "Scenes that the program makes itself [N when it is not given]:\n";
   for (const gallery::Entry& entry : gallery::entries()) {
     help += fmt::format("  {:<14} {}", written(entry), entry.description);
-    if (entry.default_size > 0) help += fmt::format(" (N is {} when not given)", entry.default_size);
+    if (entry.default_size > 0) help += fmt::format(" [{}]", entry.default_size);
     help += "\n";
   }
   return help;

@@ -17,7 +17,7 @@ SceneDesc open_scene(const std::string& name_or_path, Executor& executor);
 /// The preset by its name, "fast", "balanced" or "best"; anything else is balanced.
 BuildOptions build_options(const std::string& preset);
 
-/// Prints each warning of the scene on stderr, a line each.
+/// Prints the warnings of the scene on stderr, a line each; of very many only the first.
 void print_warnings(const SceneDesc& desc);
 
 /// For help texts: a line for each scene that the program makes itself.

@@ -1,6 +1,8 @@
 // The program as a user meets it: exit codes, one line for what went wrong, and nothing half-written.
 #include "program.h"
 
+#include <sstream>
+
 #include "boxwood/io/image.h"
 
 namespace boxwood::app {
@@ -120,6 +122,47 @@ TEST_F(Program, SaysWhatItDidUnlessQuiet) {
   EXPECT_NE(outcome.err.find("a.png"), std::string::npos);
   EXPECT_NE(outcome.err.find("rays"), std::string::npos);
   EXPECT_EQ(outcome.err.find('\r'), std::string::npos) << "no bar where there is no terminal";
+}
+
+TEST_F(Program, DevicesAndLinksStayWhatTheyAre) {
+  std::filesystem::create_symlink("/dev/null", folder_ / "null");
+  std::filesystem::create_symlink("/dev/full", folder_ / "full.png");
+  EXPECT_EQ(run("info cornell --json null").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_character_file(folder_ / "null"));
+  expect_refusal("render cornell -o full.png --size 8x8 --samples 1 --quiet", 1, "full.png", 2);
+  EXPECT_TRUE(std::filesystem::is_character_file(folder_ / "full.png"));
+}
+
+TEST_F(Program, WorksWhenNobodyListens) {
+  for (const std::string streams : {">&- 2>&- <&-", "2>&-", "2>/dev/full"}) {
+    const Outcome outcome = run("render cornell -o a.png --size 8x8 --samples 1 " + streams);
+    EXPECT_EQ(outcome.exit_code, 0) << streams;
+    EXPECT_EQ(read("a.png").substr(1, 3), "PNG") << streams;
+    std::filesystem::remove(folder_ / "a.png");
+    EXPECT_EQ(run("render nosuch -o a.png " + streams).exit_code, 1) << streams;
+  }
+  EXPECT_EQ(run("info cornell | head -n 1").err, "");
+}
+
+TEST_F(Program, SaysWhenItsOutputDidNotArrive) {
+  expect_refusal("info cornell --quiet >/dev/full", 1, "stdout");
+  expect_refusal("--help >/dev/full", 1, "stdout");
+}
+
+TEST_F(Program, ManyWarningsDoNotFloodTheTerminal) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 1000; ++i) text += "usemtl unknown" + std::to_string(i) + "\nf 1 2 3\n";
+  write("a.obj", text);
+  const Outcome outcome = run("info a.obj --quiet");
+  EXPECT_EQ(outcome.error_lines(), 21);
+  EXPECT_NE(outcome.err.find("980 more"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Program, HelpFitsATerminal) {
+  for (const std::string command : {"", "render ", "info ", "ladder "}) {
+    std::istringstream help(run(command + "--help").out);
+    for (std::string line; std::getline(help, line);) EXPECT_LE(line.size(), 80u) << command << ": " << line;
+  }
 }
 
 TEST_F(Program, InterruptWritesWhatThereIs) {

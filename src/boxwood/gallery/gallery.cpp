@@ -13,11 +13,11 @@ namespace {
 
 // Sizes end where a scene would need more than a few gigabytes.
 constexpr Entry kEntries[] = {
-    {"stilllife", "the Utah teapot among glass, metal and matte spheres, and a sphere flake", 0, 0},
+    {"stilllife", "the Utah teapot, glass, metal and matte spheres, a sphere flake", 0, 0},
     {"cornell", "the Cornell box: two blocks, two colored walls, one lamp", 0, 0},
     {"spheres", "N spheres of mixed size in a cube", 2'000, 10'000'000},
     {"soup", "N random triangles of mixed size in a cube", 20'000, 20'000'000},
-    {"terrain", "a fractal landscape of N by N cells with two triangles each", 512, 4096},
+    {"terrain", "a fractal landscape of N by N cells, two triangles each", 512, 4096},
     {"city", "N towers, long and thin, and the ground they stand on", 2'500, 10'000'000},
     {"duplicates", "one triangle N times in one place: the worst case", 1'000, 20'000'000},
 };
