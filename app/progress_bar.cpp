@@ -19,7 +19,7 @@ constexpr double kSureAfter = 0.5;                       // seconds before a for
 /// Columns of the terminal behind stderr.
 std::size_t terminal_width() {
   winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -58,11 +58,14 @@ void ProgressBar::update(std::string_view stage, double done, std::string_view d
     print_error("{} {}\n", stage_, tail);
     return;
   }
-  // The bar takes what the words leave of the line.
+  // The bar takes what the words leave of the line. A line that wraps could not be drawn over, so a narrow
+  // terminal gets no bar and as many of the words as it has room for.
   const std::size_t words = stage_.size() + tail.size() + 6, columns = terminal_width();
   const std::size_t cells = columns > words + 5 ? std::min<std::size_t>(columns - words, 40) : 0;
   const auto full = static_cast<std::size_t>(done * static_cast<double>(cells));
-  print_error("\r\033[K{} [{}{}] {}", stage_, std::string(full, '#'), std::string(cells - full, '.'), tail);
+  const std::string bar =
+      cells > 0 ? fmt::format("[{}{}] ", std::string(full, '#'), std::string(cells - full, '.')) : "";
+  print_error("\r\033[K{:.{}}", fmt::format("{} {}{}", stage_, bar, tail), columns - 1);
   std::fflush(stderr);
   is_drawn_ = true;
 }

@@ -1,0 +1,65 @@
+// The bar as a terminal gets it.
+#include "progress_bar.h"
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <unistd.h>
+
+namespace boxwood::app {
+namespace {
+
+const std::string kStartOfLine = "\r\033[K";  // go there, and clear what the line held
+
+/// What a terminal of so many columns is told to show on its line, one text after another.
+std::vector<std::string> shown_on(unsigned short columns) {
+  winsize size{};
+  size.ws_row = 24;
+  size.ws_col = columns;
+  int terminal = -1, program = -1;
+  EXPECT_EQ(openpty(&terminal, &program, nullptr, nullptr, &size), 0);
+  const int stderr_before = dup(STDERR_FILENO);
+  dup2(program, STDERR_FILENO);
+  {
+    ProgressBar bar(false);
+    bar.update("rendering", 0.5, "0.54 Mrays/s");
+  }
+  dup2(stderr_before, STDERR_FILENO);
+  close(stderr_before);
+
+  char bytes[1000];
+  const ssize_t count = read(terminal, bytes, sizeof(bytes));
+  close(program);
+  close(terminal);
+  const std::string text(bytes, count > 0 ? static_cast<std::size_t>(count) : 0);
+  std::vector<std::string> lines;
+  for (std::size_t at = text.find(kStartOfLine); at != std::string::npos;) {
+    at += kStartOfLine.size();
+    const std::size_t next = text.find(kStartOfLine, at);
+    lines.push_back(text.substr(at, next == std::string::npos ? next : next - at));
+    at = next;
+  }
+  return lines;
+}
+
+TEST(ProgressBar, ShowsABarAndRemovesIt) {
+  const std::vector<std::string> lines = shown_on(80);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0], "rendering [" + std::string(20, '#') + std::string(20, '.') + "]  50%  0.54 Mrays/s");
+  EXPECT_EQ(lines[1], "");
+}
+
+TEST(ProgressBar, NeverWrapsTheLine) {
+  for (const unsigned short columns : {1, 10, 20, 30, 40, 50}) {
+    const std::vector<std::string> lines = shown_on(columns);
+    ASSERT_EQ(lines.size(), 2u) << columns;
+    EXPECT_LT(lines[0].size(), columns);
+    EXPECT_EQ(lines[0].substr(0, 9), std::string("rendering").substr(0, columns - 1u));
+  }
+}
+
+}  // namespace
+}  // namespace boxwood::app
