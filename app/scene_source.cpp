@@ -24,8 +24,9 @@ std::string written(const gallery::Entry& entry) {
 SceneDesc open_scene(const std::string& name_or_path, Executor& executor) {
   if (gallery::is_known(name_or_path.substr(0, name_or_path.find(':')))) return gallery::make(name_or_path);
 
-  std::error_code ignored;
-  if (!std::filesystem::exists(name_or_path, ignored)) {
+  // A file that may not be seen is left to the reader, which says why.
+  std::error_code hidden;
+  if (!std::filesystem::exists(name_or_path, hidden) && !hidden) {
     std::string names;
     for (const gallery::Entry& entry : gallery::entries())
       names += (names.empty() ? "" : ", ") + written(entry);

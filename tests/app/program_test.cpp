@@ -81,6 +81,11 @@ TEST_F(Program, ScenesThatAreNotThere) {
   expect_refusal("render . -o a.png", 1, ".");
 }
 
+TEST_F(Program, FilesThatMayNotBeSeen) {
+  std::filesystem::create_symlink("loop.obj", folder_ / "loop.obj");
+  expect_refusal("info loop.obj", 1, "loop.obj: cannot be read: Too many levels of symbolic links", 1);
+}
+
 TEST_F(Program, BrokenFiles) {
   write("broken.obj", "v 0 0 0\nf 1 2 3\n");
   expect_refusal("render broken.obj -o a.png", 1, "broken.obj", 1);
