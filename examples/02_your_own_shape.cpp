@@ -1,5 +1,5 @@
-// 02_your_own_shape: how does a shape of my own join? By having three members; nothing to derive from or to
-// register.
+// 02_your_own_shape: how does a shape of my own join?
+// By having three members; nothing to derive from or to register.
 #include <cstdio>
 #include <vector>
 

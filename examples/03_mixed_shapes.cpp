@@ -1,5 +1,5 @@
-// 03_mixed_shapes: how does one array hold shapes of different kinds? As AnyShape; the textbook's vector of
-// Shape*.
+// 03_mixed_shapes: how does one array hold shapes of different kinds?
+// As AnyShape; the textbook's vector of Shape*.
 #include <cstdio>
 #include <vector>
 
@@ -14,8 +14,8 @@ class Floor final : public Shape {
   void intersect(const PreparedRay& ray, ShapeSink& sink) const override {
     const float t = -ray.origin.y / ray.direction.y;
     const float x = ray.origin.x + ray.direction.x * t, z = ray.origin.z + ray.direction.z * t;
-    if (std::fabs(x) <= 1000 && std::fabs(z) <= 1000)
-      sink.report({.t = t});  // false for a ray along the floor
+    // False for a ray along the floor, whose t is no number.
+    if (std::fabs(x) <= 1000 && std::fabs(z) <= 1000) sink.report({.t = t});
   }
   Vec3 normal(const PreparedRay&, const Crossing&) const override { return {0, 1, 0}; }
 };

@@ -1,5 +1,5 @@
-// 05_all_hits: how thick is it? Each crossing comes exactly once, so that crossings pair up into inside and
-// outside.
+// 05_all_hits: how thick is it?
+// Each crossing comes exactly once, so that crossings pair up into inside and outside.
 #include <cstdio>
 #include <vector>
 
@@ -19,8 +19,8 @@ int main() {
   }
   const Bvh bvh = build(boxes(shapes));
 
-  // Straight through the diagonals that the triangles share: still two crossings of the box, not three or
-  // four.
+  // Straight through the diagonals that the triangles share:
+  // still two crossings of the box, not three or four.
   const Ray ray{.origin = {0, 0, 10}, .direction = {0, 0, -1}};
   const std::vector<ShapeHit> hits = all_hits(bvh, shapes, ray);
 

@@ -1,5 +1,5 @@
-// 06_closest_point_and_nearest: which shapes are near? The same tree answers questions that have no ray in
-// them.
+// 06_closest_point_and_nearest: which shapes are near?
+// The same tree answers questions that have no ray in them.
 #include <cstdio>
 #include <vector>
 

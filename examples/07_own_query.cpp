@@ -6,8 +6,8 @@
 
 using namespace boxwood;
 
-// Which ball reaches highest above a point of the ground? The bound and the limit turn "highest" into
-// "smallest".
+// Which ball reaches highest above a point of the ground?
+// The bound and the limit turn "highest" into "smallest".
 class HighestAbove {
  public:
   HighestAbove(float x, float z, const std::vector<Sphere>& balls) : x_(x), z_(z), balls_(balls) {}

@@ -1,5 +1,5 @@
-// 08_picture: how do rays become a picture? One through each pixel; the color of what it hits, and a ray to
-// the sun.
+// 08_picture: how do rays become a picture?
+// One through each pixel; the color of what it hits, and a ray to the sun.
 #include <cstdio>
 
 #include <boxwood/boxwood.h>

@@ -1,5 +1,5 @@
-// 09_shadow_rays: a million rays, and who does the work? Spans in, spans out, on threads that the caller
-// chooses.
+// 09_shadow_rays: a million rays, and who does the work?
+// Spans in, spans out, on threads that the caller chooses.
 #include <cstdio>
 #include <memory>
 #include <thread>

@@ -46,8 +46,8 @@ Box3 tricky_box(Random& random, float scale) {
   return box;
 }
 
-/// A ray near `box`: from a face, an edge, a corner or anywhere; along an axis, at a corner, into a face or
-/// anywhere.
+/// A ray near `box`: from a face, an edge, a corner or anywhere;
+/// along an axis, at a corner, into a face or anywhere.
 Ray tricky_ray(Random& random, const Box3& box, float scale, float direction_scale) {
   Ray ray;
   ray.origin = tricky_point(random, scale * (random.below(2) ? 1.0f : 3.0f));

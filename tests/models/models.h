@@ -1,7 +1,7 @@
 // models.h: which real scenes do these tests look at, and with which rays?
 //
-// The folder comes from the environment variable BOXWOOD_MODELS; without it every test here skips, and says
-// so.
+// The folder comes from the environment variable BOXWOOD_MODELS;
+// without it every test here skips, and says so.
 #pragma once
 
 #include <cstdlib>
@@ -54,8 +54,8 @@ inline std::string model_name(const ::testing::TestParamInfo<Model>& info) {
   return name;
 }
 
-/// A third from outside towards the bounds, a third from inside in all directions, a third that leaves a
-/// surface.
+/// A third from outside towards the bounds,
+/// a third from inside in all directions, a third that leaves a surface.
 inline std::vector<Ray> model_rays(const Scene& scene, std::size_t count) {
   Random random(17);
   const Box3 box = scene.bounds();

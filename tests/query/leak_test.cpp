@@ -106,8 +106,8 @@ struct Count {
   std::atomic<std::size_t> rays = 0, leaks = 0, miscounted = 0, disagreements = 0, crossings = 0;
 };
 
-/// +1 where the ray leaves through the triangle, -1 where it enters: the sign of the area that the crossing
-/// test saw.
+/// +1 where the ray leaves through the triangle, -1 where it enters:
+/// the sign of the area that the crossing test saw.
 int crossing_sign(const PreparedRay& ray, const Triangle& triangle) {
   const auto project = [&](Vec3 p) {
     const Vec3 t = p - ray.origin;

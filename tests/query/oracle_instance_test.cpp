@@ -41,8 +41,8 @@ constexpr Kind kSimilarities[] = {Kind::moved, Kind::turned, Kind::similar, Kind
 constexpr Kind kAll[] = {Kind::moved,   Kind::turned,   Kind::similar,  Kind::stretched,
                          Kind::sheared, Kind::mirrored, Kind::flattened};
 
-/// Only what rays ask: the face of a shape without closest_point, for transforms under which that is not
-/// known.
+/// Only what rays ask: the face of a shape without closest_point,
+/// for transforms under which that is not known.
 template <ShapeType S>
 struct RaysOnly {
   S shape;

@@ -1,5 +1,5 @@
-// oracle_mesh_test.cpp: every query on every builder's tree over connected meshes, under rays aimed at what
-// is shared.
+// oracle_mesh_test.cpp: every query on every builder's tree over connected meshes,
+// under rays aimed at what is shared.
 #include <tuple>
 
 #include "oracle.h"

@@ -45,8 +45,8 @@ TYPED_TEST(OracleOfShapes, HugeTinyAndFarAway) {
   test::expect_equal_to_brute_force("all scales", mixed, {}, 3);
 }
 
-/// A careless shape of a user's own: what it says of crossings and of its nearest point is far outside its
-/// box.
+/// A careless shape of a user's own:
+/// what it says of crossings and of its nearest point is far outside its box.
 struct Sloppy {
   Cuboid block;
   float error;

@@ -23,8 +23,8 @@ Vec3 at_cosine(float cosine) {
   return {std::sqrt(1 - cosine * cosine), 0, cosine};
 }
 
-/// The share of light that comes back in all directions together, as sample() finds it. `bounded` is that of
-/// red.
+/// The share of light that comes back in all directions together,
+/// as sample() finds it. `bounded` is that of red.
 float albedo(const Material& material, float cosine, int count = 1 << 14) {
   const PreparedMaterial prepared(material);
   const Bsdf bsdf(prepared, material.color, flat_surface({0, 0, 1}), at_cosine(cosine));
@@ -108,8 +108,8 @@ TEST(Bsdf, SampleAndEvaluateAgree) {
 }
 
 TEST(Bsdf, SamplesFollowTheirDensity) {
-  // In cells of equal solid angle: how often sample() comes there, and the integral of the density that
-  // evaluate() states.
+  // In cells of equal solid angle:
+  // how often sample() comes there, and the integral of the density that evaluate() states.
   constexpr int kRings = 4, kSectors = 8, kCount = 200000, kSteps = 24;
   for (const auto& [name, material] : white_materials()) {
     const PreparedMaterial prepared(material);
@@ -206,8 +206,8 @@ TEST(Fresnel, KnownValues) {
   EXPECT_EQ(fresnel_dielectric(0.2f, 1 / 1.5f), 1);
   EXPECT_NEAR(fresnel_dielectric(0, 1.5f), 1, 1e-6f);
   EXPECT_EQ(fresnel_dielectric(0.37f, 1), 0);
-  // Brewster's angle, tan = eta: half of the light is not reflected at all, the rest by ((eta^2 - 1) / (eta^2
-  // + 1))^2.
+  // Brewster's angle, tan = eta: half of the light is not reflected at all,
+  // the rest by ((eta^2 - 1) / (eta^2 + 1))^2.
   const float brewster = 1 / std::sqrt(1 + 1.5f * 1.5f), perpendicular = 1.25f / 3.25f;
   EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f), 0.5f * perpendicular * perpendicular, 1e-6f);
   // Published: 0.596 for an index of 1.5 (Judd, 1942).

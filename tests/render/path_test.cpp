@@ -52,8 +52,8 @@ TEST(Path, FurnaceInsideASphereThatShinesAndReflects) {
 }
 
 TEST(Path, EveryMaterialInAFurnace) {
-  // Under the same light from everywhere, nothing convex can look brighter; what loses nothing looks as
-  // bright.
+  // Under the same light from everywhere, nothing convex can look brighter;
+  // what loses nothing looks as bright.
   struct Expectation {
     Material material;
     float least;

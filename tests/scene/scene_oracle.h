@@ -1,7 +1,7 @@
 // scene_oracle.h: what would a scene answer if it had no trees?
 //
-// Visits every primitive of every instance through the same leaf rules (shape/gate.h) and sorts by the
-// contract.
+// Visits every primitive of every instance through the
+// same leaf rules (shape/gate.h) and sorts by the contract.
 #pragma once
 
 #include <algorithm>

@@ -66,8 +66,8 @@ TYPED_TEST(Laws, TheBoxHoldsTheShapeAndTheLineMeetsItOnTheSurface) {
         const float reach = max(max_component(abs(box.lower - from)), max_component(abs(box.upper - from)));
         for (const Crossing& crossing : line_crossings(shape, ray)) {
           ASSERT_TRUE(std::fabs(crossing.t) < kInfinity);
-          // The crossing lies in the box up to the rounding of t, and the point of the shape nearest to it is
-          // itself.
+          // The crossing lies in the box up to the rounding of t,
+          // and the point of the shape nearest to it is itself.
           const Interval inside = ray.interval(box);
           const float slack = 1e-4f * (std::fabs(inside.exit) + std::fabs(inside.entry) + 1);
           if (!std::same_as<TypeParam, Triangle> && !std::same_as<TypeParam, Quad>) {
@@ -246,8 +246,8 @@ TYPED_TEST(Laws, OverlapAgreesWithTheNearestPoint) {
     (answer ? touching : apart) += 1;
     points_found += found;
     EXPECT_TRUE(answer || !found);
-    // Not found at that depth: a true overlap can only be a graze, which the box made a little smaller no
-    // longer has.
+    // Not found at that depth: a true overlap can only be a graze,
+    // which the box made a little smaller no longer has.
     if (!found && answer && budget >= 0) {
       const Vec3 in = size * 0.03f;
       EXPECT_FALSE(shape.overlaps(Box3{box.lower + in, box.upper - in}));

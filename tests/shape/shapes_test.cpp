@@ -1,5 +1,5 @@
-// shapes_test.cpp: the answers of the other shapes in cases that one can work out by hand, and users' own
-// shapes.
+// shapes_test.cpp: the answers of the other shapes in cases
+// that one can work out by hand, and users' own shapes.
 #include <limits>
 #include <numbers>
 #include <vector>

@@ -28,8 +28,8 @@ TEST(Triangle, GivesTAndWeights) {
   EXPECT_FALSE(crosses({{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {0.6f, 0.6f, 3}, {0, 0, -1}));
 }
 
-// A fan around a vertex covers all directions around it: a ray exactly through the vertex crosses one
-// triangle.
+// A fan around a vertex covers all directions around it:
+// a ray exactly through the vertex crosses one triangle.
 TEST(Triangle, AVertexOfAFanIsCrossedOnce) {
   Random random(1);
   for (int corners = 3; corners < 12; ++corners)

@@ -15,8 +15,8 @@ struct BoxSet {
   std::vector<Box3> boxes;
 };
 
-/// Boxes of random triangles: corners within `size` of a random point of the unit cube, sizes from tiny to
-/// large.
+/// Boxes of random triangles: corners within `size` of a
+/// random point of the unit cube, sizes from tiny to large.
 inline std::vector<Box3> soup_boxes(std::size_t count, std::uint64_t seed = 1, float largest = 0.05f) {
   Random random(seed);
   std::vector<Box3> boxes(count);
@@ -48,8 +48,8 @@ inline std::vector<Box3> terrain_boxes(int n) {
   return boxes;
 }
 
-/// The boxes of the sets below in order: nothing, one, two, coincident, flat, huge, tiny, mixed and deep
-/// ones.
+/// The boxes of the sets below in order:
+/// nothing, one, two, coincident, flat, huge, tiny, mixed and deep ones.
 inline std::vector<BoxSet> box_sets() {
   std::vector<BoxSet> sets;
   sets.push_back({"nothing", {}});

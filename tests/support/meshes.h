@@ -26,8 +26,8 @@ Mesh cube(int cells = 1);
 /// Menger's sponge in [-1, 1]^3: a closed fractal solid, full of edges inside edges and of faces in one
 /// plane. Level 0 is the cube; level 3 has 36,096 triangles.
 Mesh sponge(int levels);
-/// An icosphere whose vertices are moved in and out by random amounts, at every level by half as much as
-/// before.
+/// An icosphere whose vertices are moved in and out by random amounts,
+/// at every level by half as much as before.
 Mesh rough_sphere(int levels, std::uint64_t seed = 1);
 /// `count` separate triangles in [-1, 1]^3; sizes from 1 down to 1e-4, spread evenly over the magnitudes.
 Mesh triangle_soup(int count, std::uint64_t seed = 1);

@@ -92,10 +92,8 @@ struct Make<Cuboid> {
   static Cuboid degenerate(Random& r) {
     Cuboid c = lattice(r);
     const int axis = static_cast<int>(r.below(3));
-    if (r.below(2))
-      c.upper[axis] = c.lower[axis];  // flat
-    else
-      c.upper[axis] = c.lower[axis] - 1;  // inside out: not there
+    // Flat, or inside out: not there.
+    c.upper[axis] = c.lower[axis] - (r.below(2) ? 0.0f : 1.0f);
     return c;
   }
 };

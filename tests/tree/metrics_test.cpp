@@ -53,8 +53,8 @@ TEST(Metrics, EndPointOverlapOfAPair) {
   // Touching: the shared face lies in the other's leaf, 1 of 6 + 6 for each.
   EXPECT_DOUBLE_EQ(end_point_overlap(Pair(0).bvh, Pair(0).boxes), 2.0 / 12);
 
-  // A quarter deep in each other: one whole face and a quarter of four, for each. The root is a stranger to
-  // none.
+  // A quarter deep in each other: one whole face and a quarter of four, for each.
+  // The root is a stranger to none.
   EXPECT_DOUBLE_EQ(end_point_overlap(Pair(-0.25f).bvh, Pair(-0.25f).boxes), 2 * (1 + 4 * 0.25) / 12);
 
   // A flat box has two faces in one place.

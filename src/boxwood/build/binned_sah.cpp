@@ -6,8 +6,8 @@
 namespace boxwood {
 namespace {
 
-/// Which bin a half center falls into, on each axis: monotonic in the center, so that bins are slabs in
-/// order.
+/// Which bin a half center falls into, on each axis:
+/// monotonic in the center, so that bins are slabs in order.
 class Binning {
  public:
   Binning(const Reach& half_centers, int bins) : bins_(bins) {
@@ -71,8 +71,8 @@ struct Histogram {
   }
 };
 
-/// Prices every plane between two bins that leaves something on both sides; `index` is the first bin on the
-/// right.
+/// Prices every plane between two bins that leaves something on both sides;
+/// `index` is the first bin on the right.
 Split find_best_split(const Histogram& histogram, const Binning& binning, std::uint32_t total) {
   Split best;
   for (int axis = 0; axis < 3; ++axis) {
@@ -104,8 +104,8 @@ Split find_best_split(const Histogram& histogram, const Binning& binning, std::u
   return best;
 }
 
-/// Ranges from this size on are worked on by blocks of kBlock items at the same time; neither shows in the
-/// tree.
+/// Ranges from this size on are worked on by blocks of
+/// kBlock items at the same time; neither shows in the tree.
 constexpr std::size_t kParallelSize = 1 << 16, kBlock = 1 << 14;
 
 /// Adds all items to `all` with `add(T&, items)`; `all` is empty before.
@@ -120,16 +120,16 @@ void reduce(T& all, std::span<const Item> items, Executor& executor, const Add& 
   for (const T& part : found) all.extend(part);
 }
 
-/// Brings the items that go left to the front, by way of `scratch` where the range is large; returns how many
-/// they are.
+/// Brings the items that go left to the front,
+/// by way of `scratch` where the range is large; returns how many they are.
 template <class GoesLeft>
 std::uint32_t part(std::span<Item> items, std::span<Item> scratch, Executor& executor,
                    const GoesLeft& goes_left) {
   if (items.size() < kParallelSize)
     return static_cast<std::uint32_t>(std::partition(items.begin(), items.end(), goes_left) - items.begin());
 
-  // Count, so that each block knows where its items go, left ones from the front and right ones from there
-  // on.
+  // Count, so that each block knows where its items go,
+  // left ones from the front and right ones from there on.
   const std::size_t blocks = (items.size() + kBlock - 1) / kBlock;
   const auto block_end = [&](std::size_t block) { return std::min(items.size(), (block + 1) * kBlock); };
   std::vector<std::size_t> left_before(blocks + 1, 0);
@@ -196,8 +196,8 @@ Step BinnedSahSplitter::step(Range range, Plan plan) {
     }
   }
 
-  // Halve where levels are short, where all centers fall together, and two primitives, which have no other
-  // split.
+  // Halve where levels are short, where all centers fall together,
+  // and two primitives, which have no other split.
   const double halves_cost =
       range.size() == 2 ? items[0].reach().half_area() + items[1].reach().half_area() : area * range.size();
   if (plan == Plan::choose && !must_or_should_split(halves_cost)) return leaf;

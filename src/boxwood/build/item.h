@@ -97,8 +97,8 @@ struct Item {
         upper{box.upper.x + 0.0f, box.upper.y + 0.0f, box.upper.z + 0.0f} {}
 
   Reach reach() const {
-    // The number must not get into arithmetic: as a float it is denormal, and each operation on it costs 150
-    // cycles.
+    // The number must not get into arithmetic:
+    // as a float it is denormal, and each operation on it costs 150 cycles.
     const Reach with_number = std::bit_cast<Reach>(*this);
     return {with_number.minus_lower.with_fourth_zero(), with_number.upper};
   }

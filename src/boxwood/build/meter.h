@@ -14,8 +14,8 @@ class Meter {
  public:
   Meter(const Progress& progress, std::size_t total) : progress_(progress), total_(total) {}
 
-  /// Reports `amount` more as done. Throws Cancelled when the caller wants to stop, now or in an earlier
-  /// call.
+  /// Reports `amount` more as done.
+  /// Throws Cancelled when the caller wants to stop, now or in an earlier call.
   void advance(std::size_t amount) {
     if (!progress_) return;
     const std::size_t done = done_ += amount;

@@ -12,8 +12,8 @@ namespace boxwood {
 //     binned, 32 bins    710 /  510      1241 / 40.3
 //     sweep             1800 / 1000      1211 / 40.3
 
-// Half the bins: a twentieth less time for a tree that is a hundredth worse. The longest axis is worse at
-// both.
+// Half the bins: a twentieth less time for a tree that is a hundredth worse.
+// The longest axis is worse at both.
 BuildOptions BuildOptions::fast() {
   return {.method = Method::binned_sah, .bins = 8};
 }

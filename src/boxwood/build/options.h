@@ -20,8 +20,8 @@ struct BuildOptions {
                        ///< and where its rule finds no split); of as many or fewer, it may become a leaf.
   int bins = 16;       ///< binned_sah: bins on each axis; 2 to 64.
   float traversal_cost = 1.0f;  ///< SAH: a step over two boxes costs this many shape tests.
-  Executor* executor =
-      nullptr;        ///< Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
+  /// Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
+  Executor* executor = nullptr;
   Progress progress;  ///< Told now and then; returning false throws Cancelled. May be empty.
 
   static BuildOptions fast();      ///< Shortest time to a usable tree.

@@ -94,8 +94,8 @@ Split SweepSahSplitter::find_best_split(Range range, int axis) {
   return best;
 }
 
-/// Parts all three orders into what stands before `middle` on `axis` and what does not; each part stays
-/// sorted.
+/// Parts all three orders into what stands before `middle`
+/// on `axis` and what does not; each part stays sorted.
 void SweepSahSplitter::part(Range range, int axis, std::uint32_t middle) {
   for (std::uint32_t i = range.begin; i < range.end; ++i) goes_left_[order_[axis][i]] = i < middle;
   for_each_axis(range.size(), executor_, [&](int k) {

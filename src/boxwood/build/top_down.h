@@ -3,14 +3,14 @@
 // All top-down builders do the same: look at a range of primitives, make it a leaf or split it in two, go on
 // with both halves. They differ in one decision, which a Splitter makes; the rest is here, once:
 //
-//  - Large halves are two tasks. Each subtree owns a part of one node array that is large enough for its
-//  worst case
-//    (n primitives need at most 2n - 2 nodes below their root), so nobody waits and nobody's work moves
-//    anybody else's. The gaps are squeezed out at the end. The result is in depth-first order whatever ran
-//    when.
-//  - Depth. ceil(log2(n / leaf_size)) halvings always suffice; when only that many levels are left, the
-//  driver asks for
-//    halvings, so a leaf is larger than leaf_size only where max_depth leaves no choice.
+//  - Large halves are two tasks. Each subtree owns a part of one node array
+//    that is large enough for its worst case (n primitives need at most
+//    2n - 2 nodes below their root), so nobody waits and nobody's work moves
+//    anybody else's. The gaps are squeezed out at the end. The result is in
+//    depth-first order whatever ran when.
+//  - Depth. ceil(log2(n / leaf_size)) halvings always suffice; when only that
+//    many levels are left, the driver asks for halvings, so a leaf is larger
+//    than leaf_size only where max_depth leaves no choice.
 //  - Primitives with an empty box get a subtree of their own beside all others, which no query enters.
 #pragma once
 

@@ -8,8 +8,8 @@
 
 namespace boxwood {
 
-/// An affine map: p -> x*p.x + y*p.y + z*p.z + origin. Columns, so `x` is where the first axis goes. Default:
-/// identity.
+/// An affine map: p -> x*p.x + y*p.y + z*p.z + origin.
+/// Columns, so `x` is where the first axis goes. Default: identity.
 struct Affine3 {
   Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   Vec3 origin{0, 0, 0};
@@ -35,12 +35,12 @@ constexpr Affine3 operator*(const Affine3& a, const Affine3& b) {
 /// The determinant of the linear part; 0 where the map flattens space, negative where it mirrors.
 double determinant(const Affine3& m);
 
-/// The inverse, computed in double. Throws std::invalid_argument when the map is not finite or cannot be
-/// inverted.
+/// The inverse, computed in double.
+/// Throws std::invalid_argument when the map is not finite or cannot be inverted.
 Affine3 inverse(const Affine3& m);
 
-/// Maps a normal (a covector): multiplies by the transpose of the linear part of `object_from_world`. Not
-/// normalized.
+/// Maps a normal (a covector): multiplies by the transpose
+/// of the linear part of `object_from_world`. Not normalized.
 constexpr Vec3 transform_normal(const Affine3& object_from_world, Vec3 n) {
   return {dot(object_from_world.x, n), dot(object_from_world.y, n), dot(object_from_world.z, n)};
 }

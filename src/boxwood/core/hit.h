@@ -50,8 +50,8 @@ struct Hit {
   friend bool operator==(const Hit&, const Hit&) = default;
 };
 
-/// The order of the contract: smaller t first, equal t by (instance, geometry, primitive), then by what is
-/// left.
+/// The order of the contract: smaller t first,
+/// equal t by (instance, geometry, primitive), then by what is left.
 inline bool comes_before(const Hit& a, const Hit& b) {
   if (a.t != b.t) return a.t < b.t;
   if (a.instance_id != b.instance_id) return a.instance_id < b.instance_id;

@@ -9,8 +9,8 @@
 
 namespace boxwood {
 
-/// A stable name; `value` counts from 0 in the order in which the user gave the things. Default: no thing at
-/// all.
+/// A stable name; `value` counts from 0 in the order in
+/// which the user gave the things. Default: no thing at all.
 template <class Tag>
 struct Id {
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -10,8 +10,8 @@
 
 namespace boxwood {
 
-/// The bits of `x` at every third place, the lowest one at 0; of x the lower 10 (32-bit) or 21 (64-bit) bits
-/// count.
+/// The bits of `x` at every third place, the lowest one at 0;
+/// of x the lower 10 (32-bit) or 21 (64-bit) bits count.
 constexpr std::uint32_t spread_bits_by_3(std::uint32_t x) {
   // Each step moves the upper half of every group twice the group's length away.
   x &= 0x3ff;

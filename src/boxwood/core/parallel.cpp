@@ -50,8 +50,8 @@ class ParallelExecutor final : public Executor {
     both([&] { for_range(begin, middle, grain, body); }, [&] { for_range(middle, end, grain, body); });
   }
   void both(const Task& first, const Task& second) override {
-    // Take a helper while one is free. Relaxed, so that the count itself puts nothing in order and hides no
-    // race.
+    // Take a helper while one is free.
+    // Relaxed, so that the count itself puts nothing in order and hides no race.
     if (helpers_.fetch_add(1, std::memory_order_relaxed) >= threads_ - 1) {
       helpers_.fetch_sub(1, std::memory_order_relaxed);
       first();

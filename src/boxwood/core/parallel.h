@@ -11,8 +11,8 @@
 
 namespace boxwood {
 
-/// Runs loops and pairs of tasks. All members may be called from several threads and from inside a running
-/// task.
+/// Runs loops and pairs of tasks.
+/// All members may be called from several threads and from inside a running task.
 class Executor {
  public:
   using Range = std::function<void(std::size_t begin, std::size_t end)>;

@@ -1,10 +1,10 @@
 // prepared_ray.h: what does a ray need to know before it meets boxes and triangles?
 //
-// Everything that depends on the ray alone, or on the ray and the bounds of what it will meet, is worked out
-// once.
+// Everything that depends on the ray alone,
+// or on the ray and the bounds of what it will meet, is worked out once.
 //
 // Boxes. A box test must never lose a hit that a leaf test would report, and a leaf test has rounding errors
-// of its own: the watertight triangle test moves a vertex by up to 6uR (u = 2^-24, R = the largest distance,
+// of its own: the watertight triangle test moves a vertex by up to 7uR (u = 2^-24, R = the largest distance,
 // in the max norm, from the origin to a corner of the bounds). So the slabs are widened by constants of the
 // ray and a box costs one multiply and one add a plane:
 //

@@ -65,8 +65,8 @@ SceneDesc make_city(std::uint64_t towers) {
   for (std::uint64_t i = 0; i < towers; ++i) {
     const float x = lot_start(i % side) - middle, z = lot_start(i / side) - middle;
 
-    // A footprint somewhere on the lot, and a height of one to ten times its width, more in the middle of the
-    // town.
+    // A footprint somewhere on the lot,
+    // and a height of one to ten times its width, more in the middle of the town.
     const float w = random.uniform(0.45f, 0.92f), d = random.uniform(0.45f, 0.92f);
     const float x0 = x + random.uniform(0, 1 - w), z0 = z + random.uniform(0, 1 - d);
     const float distance_squared = (x * x + z * z) / (downtown * downtown);

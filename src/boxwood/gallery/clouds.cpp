@@ -1,5 +1,5 @@
-// clouds.cpp: scenes of N random primitives in a cube, made to be measured: spheres, triangle soup, and the
-// worst case.
+// clouds.cpp: scenes of N random primitives in a cube, made to be measured:
+// spheres, triangle soup, and the worst case.
 //
 // A cell is the cube's share of space for one primitive, 2 / cbrt(N) wide. Sizes are a multiple of it, so a
 // picture and a tree look alike for 100 primitives and for ten million. The multiple follows Pareto's law, 1

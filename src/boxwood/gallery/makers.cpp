@@ -63,8 +63,8 @@ Sky clear_sky(Vec3 towards_sun) {
   sky.horizon = {0.72f, 0.79f, 0.88f};
   sky.ground = {0.20f, 0.18f, 0.16f};
   sky.sun_direction = normalize(towards_sun);
-  // Seen under 2 degrees the sun covers 9.6e-4 steradian, so this lights a surface that faces it with
-  // about 2.2.
+  // Seen under 2 degrees the sun covers 9.6e-4 steradian,
+  // so this lights a surface that faces it with about 2.2.
   sky.sun_radiance = {2500, 2300, 2000};
   sky.sun_angle_deg = 2;
   return sky;

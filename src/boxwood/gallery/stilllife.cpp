@@ -31,8 +31,8 @@ void add_sphere(SceneDesc& desc, const char* name, float x, float z, float radiu
 /// A square lamp of the given half width, facing `target`.
 void add_lamp(SceneDesc& desc, const char* name, Vec3 center, Vec3 target, float half_x, float half_y,
               Vec3 radiance) {
-  const Affine3 frame =
-      Affine3::look_at(target, center, {0, 1, 0});  // its z axis runs from the lamp to the target
+  // Its z axis runs from the lamp to the target.
+  const Affine3 frame = Affine3::look_at(target, center, {0, 1, 0});
   const Vec3 right = frame.x * half_x, up = frame.y * half_y;
   Material lamp;
   lamp.name = name;

@@ -16,8 +16,8 @@ struct Ring {
   float radius, reach, height;
 };
 
-/// From inside the rim, over it, down the body and in to the middle of the bottom. Every third ring ends a
-/// patch.
+/// From inside the rim, over it, down the body and in to the middle of the bottom.
+/// Every third ring ends a patch.
 constexpr Ring kBody[] = {
     {1.4f, 0.784f, 2.4f},
     {1.3375f, 0.749f, 2.53125f},
@@ -139,8 +139,8 @@ Vec3d blend(const BezierPatch& patch, const Weights& along_u, const Weights& alo
 
 Vec3 position_at(const BezierPatch& patch, double u, double v) {
   const Vec3d p = blend(patch, bernstein(u), bernstein(v));
-  return {float(p.x) + 0.0f, float(p.y) + 0.0f,
-          float(p.z) + 0.0f};  // -0 becomes +0: equal points, equal bits
+  // -0 becomes +0: equal points, equal bits.
+  return {float(p.x) + 0.0f, float(p.y) + 0.0f, float(p.z) + 0.0f};
 }
 
 Vec3 normal_at(const BezierPatch& patch, double u, double v) {
@@ -211,8 +211,8 @@ TriangleMesh teapot_mesh(int segments) {
     // Each part has vertices of its own: the handle touches the belly in a point, with another normal.
     VertexPool pool(mesh);
     for (const BezierPatch& patch : std::span(patches).subspan(first, count)) {
-      // On a border one weight is 1 and three are 0, so neighbours compute the same bits and the pool finds
-      // them equal.
+      // On a border one weight is 1 and three are 0,
+      // so neighbours compute the same bits and the pool finds them equal.
       for (std::size_t i = 0; i < side; ++i)
         for (std::size_t j = 0; j < side; ++j) {
           const double u = double(i) / segments, v = double(j) / segments;

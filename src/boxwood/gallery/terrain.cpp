@@ -28,8 +28,8 @@ float lattice_value(std::int32_t x, std::int32_t y) {
   return float(std::int32_t(h ^ (h >> 15))) * 0x1p-31f;
 }
 
-/// Lattice values blended by a quintic, whose first two derivatives vanish at the lattice, so no creases
-/// show.
+/// Lattice values blended by a quintic,
+/// whose first two derivatives vanish at the lattice, so no creases show.
 Sample value_noise(float x, float y) {
   const float fx = std::floor(x), fy = std::floor(y);
   const auto ix = static_cast<std::int32_t>(fx), iy = static_cast<std::int32_t>(fy);
@@ -87,8 +87,8 @@ Vec3 ground_color(float steepness, float height) {
   return mix(color, kSnow, ramp(0.52f, 0.62f, height) * (1 - ramp(0.22f, 0.38f, steepness)));
 }
 
-/// One chart of all the colors: steepness runs to the right, height upwards. Vertices point into it by their
-/// uv.
+/// One chart of all the colors: steepness runs to the right, height upwards.
+/// Vertices point into it by their uv.
 Texture ground_chart() {
   Texture chart;
   chart.name = "ground by steepness and height";
@@ -123,8 +123,8 @@ SceneDesc make_terrain(std::uint64_t cells) {
       vertex(i, j) = {kHalfWidth * x, max(height_at(x, z, octaves), kSeaLevel), kHalfWidth * z};
     }
 
-  // Normals from the neighbours' heights; from them the steepness, and with the height the place in the
-  // chart.
+  // Normals from the neighbours' heights;
+  // from them the steepness, and with the height the place in the chart.
   mesh.normals.resize(side * side);
   mesh.uvs.resize(side * side);
   for (std::size_t j = 0; j < side; ++j)

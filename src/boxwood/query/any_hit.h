@@ -33,8 +33,8 @@ class AnyHitQuery {
   float limit_;
 };
 
-/// Whether there is a crossing with t in [ray.t_min, ray.t_max]; the same as closest_hit(...).is_hit(),
-/// sooner.
+/// Whether there is a crossing with t in [ray.t_min, ray.t_max];
+/// the same as closest_hit(...).is_hit(), sooner.
 template <ShapeType Shape, class Statistics>
 bool any_hit(const Bvh& bvh, std::span<const Shape> shapes, const Ray& ray, Statistics& statistics) {
   const PreparedRay prepared(ray, bvh.bounds());

@@ -10,8 +10,8 @@
 
 namespace boxwood {
 
-/// A point of a shape of a span, and its distance from the point that was asked about. None: distance = +inf,
-/// no id.
+/// A point of a shape of a span, and its distance from the point that was asked about.
+/// None: distance = +inf, no id.
 struct ShapePoint {
   float distance = kInfinity;
   Vec3 position;

@@ -54,8 +54,8 @@ class Group {
       float best_miss = kInfinity;
       float limit() const { return kInfinity; }
       void report(const Crossing& candidate) {
-        // The surface parameters are passed on untouched; t may have been moved a little by the gates in
-        // between.
+        // The surface parameters are passed on untouched;
+        // t may have been moved a little by the gates in between.
         const float miss = std::fabs(candidate.t - wanted.t);
         if (candidate.u == wanted.u && candidate.v == wanted.v && miss < best_miss)
           best = candidate, best_miss = miss;

@@ -34,8 +34,8 @@ struct NoStatistics {
   void count_shapes(std::uint32_t) {}
 };
 
-/// Shows every primitive that may matter to `query`. Allocates nothing; any number of threads may walk one
-/// tree.
+/// Shows every primitive that may matter to `query`.
+/// Allocates nothing; any number of threads may walk one tree.
 template <Query Q, class Statistics>
 void traverse(const Bvh& bvh, Q& query, Statistics& statistics) {
   if (bvh.is_empty()) return;

@@ -15,8 +15,8 @@
 
 namespace boxwood::reference {
 
-/// Answers the queries of query/ over a span of shapes, which must outlive it. Cost: n shapes for each
-/// question.
+/// Answers the queries of query/ over a span of shapes, which must outlive it.
+/// Cost: n shapes for each question.
 template <ShapeType Shape>
 class BruteForce {
  public:

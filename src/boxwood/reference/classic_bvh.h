@@ -8,8 +8,8 @@
 // order, and boxes that are opened though they begin behind the best hit. The next rungs take these away one
 // by one.
 //
-// Invariant: a node holds shapes_[index, index + n_objs); sorting the pointers makes each subtree such a
-// range.
+// Invariant: a node holds shapes_[index, index + n_objs);
+// sorting the pointers makes each subtree such a range.
 #pragma once
 
 #include <algorithm>
@@ -58,8 +58,8 @@ class ClassicBvh {
   }
 
   Box3 bounds() const { return bounds_; }
-  /// The nodes with the two counters and the type that a shared pointer keeps beside each, and the pointers
-  /// to shapes.
+  /// The nodes with the two counters and the type that a shared
+  /// pointer keeps beside each, and the pointers to shapes.
   std::size_t size_bytes() const {
     return node_count_ * (sizeof(Node) + 2 * sizeof(int) + sizeof(void*)) +
            shapes_.size() * sizeof(const Shape*);
@@ -107,8 +107,8 @@ class ClassicBvh {
     build_recursive(boxes, split_index, right_index, *node.right_node, depth + 1, max_depth, threshold);
   }
 
-  /// Sorts the range along the longest axis of `box` and returns the first shape whose center is not left of
-  /// the middle.
+  /// Sorts the range along the longest axis of `box` and returns
+  /// the first shape whose center is not left of the middle.
   std::uint32_t find_split_index(std::span<const Box3> boxes, std::uint32_t left_index,
                                  std::uint32_t right_index, const Box3& box) {
     const int axis = longest_axis(box.extent());
@@ -133,18 +133,18 @@ class ClassicBvh {
   }
 
   // M10. The node comes by reference; a shared pointer by value counts up and down, atomically, at each call.
-  // M11. One query, and in it the best hit so far, is passed down to every leaf. The pseudocode gave each
-  // call a new
-  //      record: no leaf knew the best distance, an interior node wrote its children's hit over a nearer one
-  //      of its caller, and the right child's hit was compared with a left one that nothing may have set.
-  // M12. Nothing is returned. "There is something in the record" also held for an older hit; the caller at
-  // the root
-  //      looks at the record itself.
+  // M11. One query, and in it the best hit so far, is passed down to every leaf. The pseudocode gave
+  //      each call a new record: no leaf knew the best distance, an interior node wrote its
+  //      children's hit over a nearer one of its caller, and the right child's hit was compared
+  //      with a left one that nothing may have set.
+  // M12. Nothing is returned. "There is something in the record"
+  //      also held for an older hit;
+  //      the caller at the root looks at the record itself.
   template <Query Q, class Statistics>
   void hit_recursive(const PreparedRay& ray, Q& query, const Node& node, Statistics& statistics) const {
-    // M13. A shape that misses reports nothing, so it cannot leave its marks in the record of a hit; and of
-    // two hits
-    //      at the same distance the smaller id is kept, whichever leaf came first. Both are the query's work.
+    // M13. A shape that misses reports nothing, so it cannot leave its marks in the record of a
+    //      hit; and of two hits at the same distance the smaller id is kept, whichever leaf came
+    //      first. Both are the query's work.
     if (node.leaf) {
       for (std::uint32_t i = node.index; i < node.index + node.n_objs; ++i)
         visit(query, id_of(i), statistics);

@@ -11,8 +11,8 @@ namespace {
 constexpr double kPlaneCost = 1, kShapeCost = 1.5;
 // A cut that frees space costs this much of its price (Wald and Havran, section 3).
 constexpr double kEmptyBonus = 0.8;
-// The tree lists at most this many shapes for each one given; heaps of overlapping shapes would make it n^2
-// otherwise.
+// The tree lists at most this many shapes for each one given;
+// heaps of overlapping shapes would make it n^2 otherwise.
 constexpr std::uint64_t kReferencesPerShape = 16;
 
 /// One side of a box. A flat box has both its sides at one position.
@@ -56,8 +56,8 @@ Cut find_cut(const CellLists& lists, const Box3& cell) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<Side>&lower = lists.lower[axis], &upper = lists.upper[axis];
 
-    // Sweep both lists together, plane by plane. Every box begins before it ends, so `upper` is the last to
-    // run out.
+    // Sweep both lists together, plane by plane.
+    // Every box begins before it ends, so `upper` is the last to run out.
     std::size_t begun = 0, ended = 0;
     while (ended < n) {
       const float plane =
@@ -68,8 +68,8 @@ Cut find_cut(const CellLists& lists, const Box3& cell) {
       const std::size_t upper_count = n - ended;  // those that end behind it
       if (!(cell.lower[axis] < plane && plane < cell.upper[axis])) continue;
 
-      // A ray that meets the cell meets a part of it with the probability of their areas (MacDonald and Booth
-      // 1990).
+      // A ray that meets the cell meets a part of it with the
+      // probability of their areas (MacDonald and Booth 1990).
       const double into_lower = half_area(below(cell, axis, plane)) / area;
       const double into_upper = half_area(above(cell, axis, plane)) / area;
       double cost =

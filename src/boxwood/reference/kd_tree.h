@@ -23,15 +23,15 @@ class KdTree {
  public:
   static constexpr int kMaxDepth = 64;
 
-  /// Shape i has boxes[i]; empty boxes are left out. Throws std::invalid_argument for a box that is not
-  /// finite.
+  /// Shape i has boxes[i]; empty boxes are left out.
+  /// Throws std::invalid_argument for a box that is not finite.
   explicit KdTree(std::span<const Box3> boxes);
 
   Box3 bounds() const { return bounds_; }
   std::size_t size_bytes() const { return nodes_.size() * sizeof(Node) + prim_ids_.size() * sizeof(PrimId); }
-  std::size_t reference_count() const {
-    return prim_ids_.size();
-  }  ///< Shapes listed, each as often as it is.
+
+  /// Shapes listed, each as often as it is.
+  std::size_t reference_count() const { return prim_ids_.size(); }
 
   template <Query Q, class Statistics>
   void walk(const PreparedRay& ray, Q& query, Statistics& statistics) const {
@@ -49,8 +49,8 @@ class KdTree {
     if (!(cell.entry <= cell.exit)) return;
 
     while (true) {
-      // Skip a cell that begins behind the best hit; a hit beyond its own cell's exit stops nothing too
-      // early.
+      // Skip a cell that begins behind the best hit;
+      // a hit beyond its own cell's exit stops nothing too early.
       if (cell.entry <= query.limit()) {
         const Node& node = nodes_[cell.node_index];
         if (!node.is_leaf()) {

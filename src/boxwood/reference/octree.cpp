@@ -8,12 +8,12 @@ namespace {
 
 // A cell with this many shapes or fewer is not cut.
 constexpr std::size_t kLeafSize = 8;
-// The tree lists at most this many shapes for each one given; heaps of overlapping shapes would make it n^2
-// otherwise.
+// The tree lists at most this many shapes for each one given;
+// heaps of overlapping shapes would make it n^2 otherwise.
 constexpr std::uint64_t kReferencesPerShape = 16;
 
-/// Whether `box` is listed in the half of a cell above (or below) `plane`, given that it reaches into the
-/// cell.
+/// Whether `box` is listed in the half of a cell above (or below) `plane`,
+/// given that it reaches into the cell.
 bool is_above(const Box3& box, int axis, float plane) {
   return box.upper[axis] > plane;
 }

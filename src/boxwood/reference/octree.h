@@ -21,15 +21,15 @@ class Octree {
  public:
   static constexpr int kMaxDepth = 20;
 
-  /// Shape i has boxes[i]; empty boxes are left out. Throws std::invalid_argument for a box that is not
-  /// finite.
+  /// Shape i has boxes[i]; empty boxes are left out.
+  /// Throws std::invalid_argument for a box that is not finite.
   explicit Octree(std::span<const Box3> boxes);
 
   Box3 bounds() const { return bounds_; }
   std::size_t size_bytes() const { return nodes_.size() * sizeof(Node) + prim_ids_.size() * sizeof(PrimId); }
-  std::size_t reference_count() const {
-    return prim_ids_.size();
-  }  ///< Shapes listed, each as often as it is.
+
+  /// Shapes listed, each as often as it is.
+  std::size_t reference_count() const { return prim_ids_.size(); }
 
   template <Query Q, class Statistics>
   void walk(const PreparedRay& ray, Q& query, Statistics& statistics) const {

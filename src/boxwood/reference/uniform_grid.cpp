@@ -71,8 +71,8 @@ UniformGrid::UniformGrid(std::span<const Box3> boxes) : bounds_(checked_bounds(b
     for (std::uint32_t& cells : resolution) cells = std::max(cells / 2, 1u);
   }
 
-  // Count the shapes of each cell, turn the counts into ends, and fill from the ends, so that each list is in
-  // order.
+  // Count the shapes of each cell, turn the counts into ends,
+  // and fill from the ends, so that each list is in order.
   const auto for_each_cell = [&](PrimId id, const auto& body) {
     const Block block = block_of(boxes[id.value]);
     for (std::uint32_t z = block.first[2]; z <= block.last[2]; ++z)

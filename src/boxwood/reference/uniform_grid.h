@@ -22,15 +22,15 @@ namespace boxwood::reference {
 
 class UniformGrid {
  public:
-  /// Shape i has boxes[i]; empty boxes are left out. Throws std::invalid_argument for a box that is not
-  /// finite.
+  /// Shape i has boxes[i]; empty boxes are left out.
+  /// Throws std::invalid_argument for a box that is not finite.
   explicit UniformGrid(std::span<const Box3> boxes);
 
   Box3 bounds() const { return bounds_; }
   std::size_t size_bytes() const;
-  std::size_t reference_count() const {
-    return prim_ids_.size();
-  }  ///< Shapes listed, each as often as it is.
+
+  /// Shapes listed, each as often as it is.
+  std::size_t reference_count() const { return prim_ids_.size(); }
   std::array<std::uint32_t, 3> resolution() const { return resolution_; }
 
   template <Query Q, class Statistics>

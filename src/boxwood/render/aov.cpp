@@ -90,8 +90,8 @@ class OcclusionIntegrator final : public Integrator {
     const Frame frame(is_outside ? surface.shading_normal : -surface.shading_normal);
     const Vec3 direction = frame.to_world(cosine_hemisphere(sampler.next_2d()));
 
-    // An interpolated normal's hemisphere dips below the surface itself; what is seen there is the surface:
-    // shut in.
+    // An interpolated normal's hemisphere dips below the surface itself;
+    // what is seen there is the surface: shut in.
     const bool is_above = (dot(direction, surface.normal) > 0) == is_outside;
     ++rays;
     out[0] = is_above && !scene_.any_hit(surface.spawn(direction, reach_)) ? 1.0f : 0.0f;

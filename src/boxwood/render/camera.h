@@ -9,8 +9,8 @@
 
 namespace boxwood::render {
 
-/// Makes the rays of a picture of `width` x `height` pixels. Directions are of unit length, so t is a
-/// distance.
+/// Makes the rays of a picture of `width` x `height` pixels.
+/// Directions are of unit length, so t is a distance.
 class Lens {
  public:
   /// Throws std::invalid_argument when the camera is not finite, or its angle not between 0 and 180 degrees.

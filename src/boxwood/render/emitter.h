@@ -36,8 +36,8 @@ class EmitterGroup {
   /// A point of the group, seen from `receiver`.
   EmitterPoint sample(Vec3 receiver, float choice, Vec2 u) const;
 
-  /// The density with which sample() finds `position`, which is on the `part` of the primitive. 0 when it
-  /// never does.
+  /// The density with which sample() finds `position`,
+  /// which is on the `part` of the primitive. 0 when it never does.
   float pdf_area(PrimId primitive_id, std::uint32_t part, Vec3 position, Vec3 receiver) const;
 
  private:

@@ -16,8 +16,8 @@ inline constexpr int kGlyphHeight = 7;
 /// falls outside is cut off.
 void draw_text(Image& image, int x, int y, int scale, std::string_view text, Vec3 color);
 
-/// Fills the rectangle [x0, x1) x [y0, y1), mixed with what is there by `opacity`. What falls outside is cut
-/// off.
+/// Fills the rectangle [x0, x1) x [y0, y1), mixed with what is there by `opacity`.
+/// What falls outside is cut off.
 void fill_rectangle(Image& image, int x0, int y0, int x1, int y1, Vec3 color, float opacity = 1);
 
 }  // namespace boxwood::render

@@ -24,8 +24,8 @@ namespace boxwood::render {
 struct LightSample {
   Vec3 direction;  ///< Towards the light; unit length.
   Vec3 radiance;   ///< From there, if nothing is in the way; for lights without a surface: what replaces it.
-  float pdf =
-      0;  ///< Per solid angle, with the choice of the light; for lights without a surface: of the choice.
+  /// Per solid angle, with the choice of the light; for lights without a surface: of the choice.
+  float pdf = 0;
   bool is_perfect = false;  ///< No other way finds this light.
   Ray shadow_ray;           ///< Hits nothing when the light is in sight.
 };
@@ -80,8 +80,8 @@ class Lights {
   std::optional<Sky> sky_;
   std::optional<Sun> sun_;
   std::vector<Light> lights_;
-  std::vector<double>
-      running_strength_;  // the sum of strengths up to each light; for large numbers of lights
+  // The sum of strengths up to each light; for large numbers of lights.
+  std::vector<double> running_strength_;
   std::vector<EmitterGroup> groups_;
   std::vector<std::uint32_t> group_of_instance_;  // InstanceId -> groups_; kNoGroup
   std::vector<std::uint32_t> light_of_group_;

@@ -9,13 +9,13 @@
 namespace boxwood::render {
 namespace {
 
-constexpr int kMaxBounces =
-    64;  // a bound for light that is caught in glass; roulette ends other paths long before
+// A bound for light that is caught in glass; roulette ends other paths long before.
+constexpr int kMaxBounces = 64;
 constexpr int kRouletteAfter = 3;  // bounces; early ones carry most of the picture
 constexpr float kMaxSurvival = 0.95f;
 
-/// The weight of a sample of density `a` when the same light could have been found with density `b`: Veach's
-/// power heuristic.
+/// The weight of a sample of density `a` when the same light could
+/// have been found with density `b`: Veach's power heuristic.
 float power_heuristic(float a, float b) {
   const float ratio = b / a;
   return 1 / (1 + ratio * ratio);
@@ -40,13 +40,13 @@ class PathTracer final : public Integrator {
   }
 
  private:
-  /// Where the path stands, and how it got there: which part of the light that it may run into now is its
-  /// own.
+  /// Where the path stands, and how it got there:
+  /// which part of the light that it may run into now is its own.
   struct Vertex {
     Receiver place;  // the last point of the path
     float pdf = 0;   // of the direction taken from there
-    bool is_perfect =
-        true;  // next-event estimation could not have found what this direction finds; true at the camera
+    // Next-event estimation could not have found what this direction finds; true at the camera.
+    bool is_perfect = true;
   };
 
   Vec3 radiance(Ray ray, Sampler& sampler, std::uint64_t& rays) const {

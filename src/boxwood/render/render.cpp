@@ -17,8 +17,8 @@ namespace boxwood::render {
 namespace {
 
 constexpr int kTileSide = 16;
-constexpr int kMaxPass =
-    16;  // samples a pixel; keeps a tile, and so the reaction to a stop, well below a second
+// Samples a pixel; keeps a tile, and so the reaction to a stop, well below a second.
+constexpr int kMaxPass = 16;
 
 struct NamedMode {
   Mode mode;

@@ -5,8 +5,8 @@
 // and each pair by hashed Owen scrambling: Burley, "Practical Hash-based Owen Scrambling", JCGT 2020, with
 // the permutation by Laine and Karras, "Stratified Sampling for Stochastic Transparency", EGSR 2011.
 //
-// Invariant: the first 2^k samples of a pixel, in each pair of dimensions, hit each of the 2^k elementary
-// boxes once.
+// Invariant: the first 2^k samples of a pixel,
+// in each pair of dimensions, hit each of the 2^k elementary boxes once.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace boxwood::render {
 
-/// Mixes the bits of `x` so that inputs that differ in one bit look unrelated. The finalizer "lowbias32"
-/// (Wellons, 2018).
+/// Mixes the bits of `x` so that inputs that differ in one bit look unrelated.
+/// The finalizer "lowbias32" (Wellons, 2018).
 constexpr std::uint32_t hash_bits(std::uint32_t x) {
   x = (x ^ (x >> 16)) * 0x7feb352du;
   x = (x ^ (x >> 15)) * 0x846ca68bu;
@@ -72,8 +72,8 @@ class Sampler {
     const std::uint32_t seed = hash_bits(pixel_seed_, dimension_++);
     // Shuffle: which point of the sequence this sample takes.
     const std::uint32_t index = reverse_bits(owen_scramble_reversed(reversed_index_, seed));
-    // Its first coordinate is the index with its bits reversed, so the reversed coordinate is the index
-    // itself.
+    // Its first coordinate is the index with its bits reversed,
+    // so the reversed coordinate is the index itself.
     const std::uint32_t x = reverse_bits(owen_scramble_reversed(index, hash_bits(seed, 1)));
     const std::uint32_t y =
         reverse_bits(owen_scramble_reversed(reverse_bits(second_sobol(index)), hash_bits(seed, 2)));
@@ -81,8 +81,8 @@ class Sampler {
   }
 
  private:
-  /// The second coordinate of the Sobol sequence. It is linear over bits, so each byte adds (xor) its own
-  /// share.
+  /// The second coordinate of the Sobol sequence.
+  /// It is linear over bits, so each byte adds (xor) its own share.
   static constexpr std::uint32_t second_sobol(std::uint32_t index) {
     return kSecondSobol[0][index & 255] ^ kSecondSobol[1][(index >> 8) & 255] ^
            kSecondSobol[2][(index >> 16) & 255] ^ kSecondSobol[3][index >> 24];

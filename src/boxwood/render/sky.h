@@ -24,8 +24,8 @@ struct Sun {
 /// The sky's sun, if it has one that shines.
 std::optional<Sun> sun_of(const Sky& sky);
 
-/// What a scene without any light is shown under: an overcast sky and a soft sun behind the viewer's left
-/// shoulder.
+/// What a scene without any light is shown under:
+/// an overcast sky and a soft sun behind the viewer's left shoulder.
 Sky plain_sky(const Camera& camera);
 
 }  // namespace boxwood::render

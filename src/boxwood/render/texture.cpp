@@ -26,8 +26,8 @@ int wrap(std::int64_t i, int n) {
 Vec3 texture_color(const Texture& texture, Vec2 uv) {
   if (texture.texels.empty() || !std::isfinite(uv.x) || !std::isfinite(uv.y)) return {1, 1, 1};
 
-  // Texel centers are at halves. Far out, where floats have no fraction left, the answer only has to be some
-  // texel.
+  // Texel centers are at halves.
+  // Far out, where floats have no fraction left, the answer only has to be some texel.
   const double x = (uv.x - std::floor(double(uv.x))) * texture.width - 0.5;
   const double y = (1 - (uv.y - std::floor(double(uv.y)))) * texture.height - 0.5;
   const double floor_x = std::floor(x), floor_y = std::floor(y);

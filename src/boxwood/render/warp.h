@@ -1,7 +1,7 @@
 // warp.h: how does a uniform point of the unit square become a point on something else?
 //
-// Each map keeps areas in proportion, so that well spread samples stay well spread. Densities stand beside
-// the maps.
+// Each map keeps areas in proportion, so that well spread samples stay well spread.
+// Densities stand beside the maps.
 #pragma once
 
 #include "boxwood/core/vec.h"

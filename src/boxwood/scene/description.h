@@ -50,12 +50,12 @@ struct Instance {
   MaterialId material;  ///< Wins over the geometry's own when given.
 };
 
-/// A texture's pixels, sRGB already decoded to linear light.
+/// A texture's pixels, as the codes that the file holds.
 struct Texture {
   std::string name;  ///< Where it came from, for messages.
   int width = 0, height = 0;
-  std::vector<std::array<std::uint8_t, 4>>
-      texels;  ///< Rows from top to bottom, RGBA, encoded as `is_srgb` says.
+  /// Rows from top to bottom, RGBA, encoded as `is_srgb` says.
+  std::vector<std::array<std::uint8_t, 4>> texels;
   bool is_srgb = true;
 };
 
@@ -123,8 +123,8 @@ struct SceneDesc {
   TextureId add(Texture texture);
 };
 
-/// How many primitives a geometry has, or a description defines (each geometry once), or shows (each
-/// instance).
+/// How many primitives a geometry has,
+/// or a description defines (each geometry once), or shows (each instance).
 std::size_t primitive_count(const Geometry& geometry);
 std::size_t defined_primitive_count(const SceneDesc& desc);
 std::size_t shown_primitive_count(const SceneDesc& desc);

@@ -11,8 +11,8 @@ namespace boxwood {
 struct Image {
   int width = 0, height = 0, channels = 3;
   std::vector<float> pixels;  ///< height x width x channels.
-  std::vector<std::string>
-      channel_names;  ///< Empty, or one for each channel ("R", "G", "B", "depth.Z", ...).
+  /// Empty, or one for each channel ("R", "G", "B", "depth.Z", ...).
+  std::vector<std::string> channel_names;
 
   Image() = default;
   Image(int width, int height, int channels = 3)

@@ -36,8 +36,8 @@ struct SceneStatistics {
 
 class Scene {
  public:
-  /// Checks and copies the geometry and builds the trees. Throws std::invalid_argument (see check),
-  /// Cancelled.
+  /// Checks and copies the geometry and builds the trees.
+  /// Throws std::invalid_argument (see check), Cancelled.
   explicit Scene(SceneDesc desc, const BuildOptions& options = BuildOptions::balanced());
   ~Scene();
   Scene(Scene&&) noexcept;
@@ -48,8 +48,8 @@ class Scene {
   Hit closest_hit(const Ray& ray) const;
   /// Whether anything is hit in [t_min, t_max].
   bool any_hit(const Ray& ray) const;
-  /// Every crossing in [t_min, t_max] once, in the order of the contract (comes_before). Replaces what `hits`
-  /// holds.
+  /// Every crossing in [t_min, t_max] once,
+  /// in the order of the contract (comes_before). Replaces what `hits` holds.
   void all_hits(const Ray& ray, std::vector<Hit>& hits) const;
 
   /// The same for many rays: hits[i] answers rays[i], bit for bit as the call with one ray. Throws

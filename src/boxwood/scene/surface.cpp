@@ -21,7 +21,7 @@ struct LocalSurface {
 };
 
 /// How far from the plane of (a, b, c), near `p`, the watertight test could still report a crossing: its
-/// vertices are moved by up to 6u of their distance, and its plane is tilted by the rounding of the cross
+/// vertices are moved by up to 7u of their distance, and its plane is tilted by the rounding of the cross
 /// product, which matters for slivers.
 float leaf_test_error(const Triangle& t, Vec3 p) {
   const float reach =
@@ -112,8 +112,8 @@ LocalSurface on_shape(const AnyShape& shape, const PreparedRay& ray, const Cross
   LocalSurface s;
   s.normal = s.shading_normal = shape.normal(ray, c);
   s.position = ray.origin + ray.direction * c.t;
-  s.error =
-      (abs(ray.origin) + abs(ray.direction * c.t)) * (32 * u);  // nothing is known of how it was worked out
+  // Nothing is known of how it was worked out.
+  s.error = (abs(ray.origin) + abs(ray.direction * c.t)) * (32 * u);
   s.uv = {c.u, c.v};
   return s;
 }

@@ -110,8 +110,8 @@ class PlacementQuery {
   Statistics& statistics_;
 };
 
-/// Shows `sink` everything that `ray` may meet: sink.limit(), sink.report(crossing, instance_id,
-/// primitive_id).
+/// Shows `sink` everything that `ray` may meet:
+/// sink.limit(), sink.report(crossing, instance_id, primitive_id).
 template <class Sink, class Statistics>
 void walk(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
   walk_part(parts, parts.world, ray, NoPlacement{}, sink, statistics);

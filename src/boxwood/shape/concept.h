@@ -27,12 +27,12 @@ struct NullSink {
 /// What rays can meet.
 ///
 /// Laws (tests/shape holds every shape of this room to them):
-///  1. box() gives the same bits at each call, and holds the shape; it is empty when the shape can never be
-///  hit.
-///  2. intersect() reports the crossings of the ray's whole *line*, each one once; the query keeps those
-///  within
-///     [t_min, limit]. It may leave out crossings outside [ray.t_min, sink.limit()], and must not leave out
-///     others.
+///  1. box() gives the same bits at each call, and holds the shape;
+///     it is empty when the shape can never be hit.
+///  2. intersect() reports the crossings of the ray's whole *line*, each one once;
+///     the query keeps those within [t_min, limit].
+///     It may leave out crossings outside [ray.t_min, sink.limit()],
+///     and must not leave out others.
 ///  3. It is a pure function of the shape and the ray: same bits in, same bits out. It never reports a NaN.
 ///  4. normal() is of unit length; closed shapes point it outward.
 template <class S>
@@ -43,8 +43,8 @@ concept ShapeType = requires(const S& shape, const PreparedRay& ray, NullSink& s
   { shape.normal(ray, crossing) } -> std::same_as<Vec3>;
 };
 
-/// A shape that also knows its point nearest to a given one (for closest point, k nearest and overlap with a
-/// sphere).
+/// A shape that also knows its point nearest to a given one (for closest point,
+/// k nearest and overlap with a sphere).
 template <class S>
 concept HasClosestPoint = requires(const S& shape, Vec3 point) {
   { shape.closest_point(point) } -> std::same_as<Vec3>;

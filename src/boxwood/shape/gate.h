@@ -38,8 +38,8 @@ class BoxGate {
   float t_min_;
 };
 
-/// The t_min that a ray inside an instance must be prepared with: -inf when every crossing is moved past
-/// ours.
+/// The t_min that a ray inside an instance must be prepared with:
+/// -inf when every crossing is moved past ours.
 inline float inner_t_min(const PreparedRay& ray, const Interval& interval) {
   return interval.entry >= ray.t_min ? -kInfinity : ray.t_min;
 }

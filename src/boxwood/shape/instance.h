@@ -50,8 +50,8 @@ class InstanceOf {
     return narrow(unit({dot(widen(m.x), n), dot(widen(m.y), n), dot(widen(m.z), n)}));
   }
 
-  /// Throws std::logic_error unless the transform is a similarity: only then is the nearest point the same in
-  /// both spaces.
+  /// Throws std::logic_error unless the transform is a similarity:
+  /// only then is the nearest point the same in both spaces.
   Vec3 closest_point(Vec3 p) const requires HasClosestPoint<Object> {
     if (!keeps_shape_)
       throw std::logic_error(

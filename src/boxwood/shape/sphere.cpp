@@ -9,8 +9,8 @@ using detail::Vec3d;
 using detail::widen;
 
 Vec3 Sphere::normal(const PreparedRay& ray, const Crossing& crossing) const {
-  // Take t as it was before it was rounded to a float, which far from a small sphere would turn the normal
-  // about.
+  // Take t as it was before it was rounded to a float,
+  // which far from a small sphere would turn the normal about.
   double t[2] = {crossing.t, crossing.t};
   cross_line(ray.origin, ray.direction, t);
   const Vec3d out = widen(ray.origin) - widen(center) + widen(ray.direction) * t[crossing.part & 1];

@@ -6,18 +6,18 @@
 // shear, so a vertex maps to the same 2D point for every triangle that shares it, and asks for the signs of
 // three edge functions at the origin. We add three things:
 //
-//  1. Exact signs. Rounding is monotonic, so the sign of fl(a*b) - fl(c*d) is exact unless the result is 0;
-//  then the
-//     products are formed in double, where the product of two floats is exact.
-//  2. A tie rule for a ray exactly on an edge: the origin is moved by (e, e^2) for an infinitely small e
-//  (Edelsbrunner
-//     and Muecke, "Simulation of Simplicity", ACM TOG 1990). The edge function of (P, Q) changes by
-//     e (P.y - Q.y) + e^2 (Q.x - P.x), so the first nonzero of the three decides. It is antisymmetric in P
-//     and Q, thus exactly one of the two triangles at an edge, and the right number at a vertex, is crossed.
-//     Three equal signs imply area: degenerate triangles are never hit.
-//  3. t from the plane, not interpolated from the sheared depths: the latter is off by up to 0.2 on large
-//  triangles
-//     along an axis. Where the plane is seen edge-on, or floats overflow, t is interpolated in double.
+//  1. Exact signs. Rounding is monotonic, so the sign of fl(a*b) - fl(c*d) is exact
+//     unless the result is 0; then the products are formed in double, where the
+//     product of two floats is exact.
+//  2. A tie rule for a ray exactly on an edge: the origin is moved by (e, e^2) for an infinitely
+//     small e (Edelsbrunner and Muecke, "Simulation of Simplicity", ACM TOG 1990). The edge
+//     function of (P, Q) changes by e (P.y - Q.y) + e^2 (Q.x - P.x), so the first nonzero of the
+//     three decides. It is antisymmetric in P and Q, thus exactly one of the two triangles at an
+//     edge, and the right number at a vertex, is crossed. Three equal signs imply area:
+//     degenerate triangles are never hit.
+//  3. t from the plane, not interpolated from the sheared depths: the latter is off by up
+//     to 0.2 on large triangles along an axis. Where the plane is seen edge-on, or floats
+//     overflow, t is interpolated in double.
 //
 // Invariant: every operation is a separate IEEE operation in the order written here (-ffp-contract=off),
 // because SIMD kernels repeat it and must get the same bits.
@@ -77,8 +77,8 @@ inline bool intersect_triangle(const PreparedRay& ray, Vec3 a, Vec3 b, Vec3 c, C
   if (!(product > 0 && std::fabs(float_sum) < 0x1p120f) && !detail::exact_triangle_test(pa, pb, pc))
     return false;
 
-  // Weights. The sum cannot be trusted where it is tiny or overflowed; then the exact products decide here
-  // too.
+  // Weights. The sum cannot be trusted where it is tiny or overflowed;
+  // then the exact products decide here too.
   double sum = float_sum;
   double da = wa, db = wb, dc = wc;
   if (!(std::fabs(float_sum) > 0x1p-80f && std::fabs(float_sum) < 0x1p120f)) {

@@ -4,8 +4,8 @@
 // builders make it, queries read it, validate (validate.h) says the first invariant that does not hold:
 //
 //  1. nodes is empty when there are no primitives; otherwise node 0 is the root.
-//  2. An interior node has count == 0 and its children at first_index and first_index + 1, after itself in
-//  the array.
+//  2. An interior node has count == 0 and its children at first_index and first_index + 1,
+//     after itself in the array.
 //  3. A leaf has count > 0 and owns prim_ids[first_index, first_index + count).
 //  4. Each node but the root has one parent; each primitive stands in exactly one leaf.
 //  5. The box of a node holds the boxes of its children; the box of a leaf holds the boxes of its primitives.

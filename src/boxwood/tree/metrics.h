@@ -9,8 +9,8 @@
 // over the place, also when the surface belongs elsewhere. Aila, Karras and Laine, "On Quality Metrics of
 // Bounding Volume Hierarchies", HPG 2013, section 4, add up how much foreign surface lies inside each box:
 //
-//     EPO = sum over nodes  C(node) area(surface inside box(node), but not of primitives below node) /
-//     area(surface)
+//     EPO = sum over nodes  C(node) area(surface inside box(node), but not of primitives below node)
+//           / area(surface)
 //
 // They take the triangles for the surface. A tree knows boxes only, so here it is the faces of the
 // primitives' boxes, clipped exactly: 0 when no box reaches over another primitive's, and comparable between
@@ -38,8 +38,8 @@ struct TreeShape {
   std::size_t node_count = 0, leaf_count = 0, primitive_count = 0;
   int depth = 0;  ///< Of the deepest node; a root alone has 0.
   double mean_leaf_depth = 0;
-  std::vector<std::size_t>
-      leaves_of_size;  ///< [k]: how many leaves have k primitives; up to the largest leaf.
+  /// [k]: how many leaves have k primitives; up to the largest leaf.
+  std::vector<std::size_t> leaves_of_size;
   double mean_leaf_size = 0;
   std::uint32_t max_leaf_size = 0;
   std::size_t size_bytes = 0;  ///< Nodes and prim_ids.

@@ -18,8 +18,8 @@ std::string check_links(const Bvh& bvh) {
   std::vector<bool> is_owned(prim_count, false);
   depth[0] = 0;
 
-  // Children come after their parent, so when a node's turn comes its parent has been seen, and no cycle can
-  // be walked.
+  // Children come after their parent,
+  // so when a node's turn comes its parent has been seen, and no cycle can be walked.
   for (std::size_t i = 0; i < node_count; ++i) {
     const BvhNode& node = bvh.nodes[i];
     if (depth[i] == kUnreached) return node_text(i) + " has no parent";
