@@ -1,3 +1,4 @@
+// What `boxwood info` says of a scene, to people and to programs.
 #include <filesystem>
 #include <fstream>
 

@@ -1,3 +1,4 @@
+// The bound that point queries lean on: a box is never farther than a box inside it.
 #include "boxwood/query/distance.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Surfaces: energy, reciprocity, and samples that follow the density they claim.
 #include "boxwood/render/bsdf.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The lens, and the camera that frames a scene that has none.
 #include "boxwood/render/camera.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Pictures as a whole: the same bits for any threads, stops, limits, and scenes of nothing.
 #include "boxwood/render/render.h"
 
 #include <atomic>

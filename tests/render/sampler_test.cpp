@@ -1,3 +1,4 @@
+// The sampler: well spread, unrelated between pixels, and a function of its arguments.
 #include "boxwood/render/sampler.h"
 
 #include <set>

@@ -1,3 +1,4 @@
+// The surface at a hit, and the next ray, which never hits what it leaves.
 #include "boxwood/scene/surface.h"
 
 #include <gtest/gtest.h>

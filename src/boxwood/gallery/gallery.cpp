@@ -1,4 +1,4 @@
-// gallery.cpp: from a name to a scene: the list, the reading of "name:size", and the one switch.
+// gallery.cpp: how does a name become a scene? The list, the reading of "name:size", and the one switch.
 
 #include "boxwood/gallery/gallery.h"
 

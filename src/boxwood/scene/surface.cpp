@@ -1,3 +1,5 @@
+// surface.cpp: how far from the truth may a position be?
+//
 // Error bounds follow Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8: a
 // position made of rounded operations comes with a bound of what rounding did, and the next ray starts beyond
 // it. To that we add what the leaf test itself may get wrong when it meets the same primitive again from so

@@ -1,3 +1,4 @@
+// A project that uses the installed core library alone.
 #include <boxwood/boxwood.h>
 
 int main() {

@@ -1,3 +1,4 @@
+// A project that uses the installed core library and both wings.
 #include <boxwood/io/image.h>
 #include <boxwood/render/render.h>
 
