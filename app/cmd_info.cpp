@@ -9,6 +9,7 @@
 #include "boxwood/io/file_bytes.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "numbers.h"
 #include "output_file.h"
 #include "progress_bar.h"
 #include "scene_report.h"
@@ -29,14 +30,6 @@ struct InfoArguments {
 
 // ---- For people.
 
-/// 1234567 as "1,234,567".
-std::string grouped(std::uint64_t n) {
-  std::string digits = std::to_string(n);
-  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
-    digits.insert(static_cast<std::size_t>(at), ",");
-  return digits;
-}
-
 std::string bytes(std::size_t n) {
   if (n < 1000) return fmt::format("{} B", n);
   if (n < 1000000) return fmt::format("{:.1f} kB", 1e-3 * static_cast<double>(n));
@@ -53,7 +46,7 @@ std::string listed(const std::map<std::string, std::size_t>& counts) {
   std::string out;
   for (const auto& [kind, count] : counts) {
     const bool is_singular = count == 1 && kind.ends_with('s') && !kind.ends_with("ss");
-    out += (out.empty() ? "" : ", ") + grouped(count) + " " +
+    out += (out.empty() ? "" : ", ") + with_commas(count) + " " +
            (is_singular ? kind.substr(0, kind.size() - 1) : kind);
   }
   return out;
@@ -73,7 +66,7 @@ void print_line(std::string_view what, std::string_view number, std::string_view
 std::string lights(const SceneReport& report) {
   std::string out;
   const auto add = [&out](std::size_t count, const char* one, const char* many) {
-    if (count > 0) out += (out.empty() ? "" : ", ") + (count == 1 ? one : grouped(count) + " " + many);
+    if (count > 0) out += (out.empty() ? "" : ", ") + (count == 1 ? one : with_commas(count) + " " + many);
   };
   add(report.has_sky, "sky", "");
   add(report.has_sun, "sun", "");
@@ -96,12 +89,13 @@ void print_camera(const std::optional<Camera>& camera) {
 
 void print_contents(const SceneReport& report, const SceneDesc& desc) {
   fmt::print("What is in it\n");
-  print_line("geometries", grouped(desc.geometries.size()), listed(report.geometries));
-  print_line("primitives", grouped(report.defined_primitives), "defined: " + listed(report.primitives));
-  print_line("", grouped(report.shown_primitives), "shown, each instance counted");
-  print_line("instances", grouped(report.instances), "");
-  print_line("materials", grouped(desc.materials.size()), listed(report.materials));
-  print_line("textures", grouped(report.textures), report.textures ? grouped(report.texels) + " texels" : "");
+  print_line("geometries", with_commas(desc.geometries.size()), listed(report.geometries));
+  print_line("primitives", with_commas(report.defined_primitives), "defined: " + listed(report.primitives));
+  print_line("", with_commas(report.shown_primitives), "shown, each instance counted");
+  print_line("instances", with_commas(report.instances), "");
+  print_line("materials", with_commas(desc.materials.size()), listed(report.materials));
+  print_line("textures", with_commas(report.textures),
+             report.textures ? with_commas(report.texels) + " texels" : "");
   print_line("lights", "", lights(report));
   print_camera(desc.camera);
   print_line(
@@ -131,7 +125,7 @@ void print_leaf_sizes(const std::vector<TreeReport>& trees) {
     const std::string range =
         last <= 8 ? std::to_string(last) : fmt::format("{} to {}", last == 16 ? 9 : last / 2 + 1, last);
     const double share = static_cast<double>(count) / static_cast<double>(total);
-    print_trimmed(fmt::format("  {:>12}{:>12}   {:5.1f} % {}", range, grouped(count), 100 * share,
+    print_trimmed(fmt::format("  {:>12}{:>12}   {:5.1f} % {}", range, with_commas(count), 100 * share,
                               std::string(static_cast<std::size_t>(share * 40 + 0.5), '#')));
   }
 }
@@ -162,8 +156,8 @@ void print_trees(const SceneReport& report) {
     const std::string overlap = tree.end_point_overlap ? fmt::format("{:.3f}", *tree.end_point_overlap) : "-";
     if (name.size() > width) name = name.substr(0, width - 3) + "...";
     fmt::print("  {:<{}}  {:>11} {:>11} {:>11}  {:>5}  {:>14}  {:>8.2f}  {:>7}\n", name, width,
-               grouped(tree.shape.primitive_count), grouped(tree.shape.node_count),
-               grouped(tree.shape.leaf_count), tree.shape.depth,
+               with_commas(tree.shape.primitive_count), with_commas(tree.shape.node_count),
+               with_commas(tree.shape.leaf_count), tree.shape.depth,
                fmt::format("{:.2f}, max {}", tree.shape.mean_leaf_size, tree.shape.max_leaf_size),
                tree.sah_cost, overlap);
   }
@@ -171,7 +165,7 @@ void print_trees(const SceneReport& report) {
     std::size_t primitives = 0;
     for (std::size_t i = shown; i < order.size(); ++i) primitives += order[i]->shape.primitive_count;
     fmt::print("  and {} smaller trees with {} primitives (--json lists them all)\n",
-               grouped(order.size() - shown), grouped(primitives));
+               with_commas(order.size() - shown), with_commas(primitives));
   }
   print_leaf_sizes(report.trees);
 }

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "boxwood/io/file_bytes.h"
 #include "boxwood/io/image.h"
 #include "boxwood/render/render.h"
 #include "boxwood/scene/scene.h"
@@ -56,13 +57,6 @@ std::optional<Size> parse_size(const std::string& text) {
   const auto height = read_number(at, end);
   if (!height || at != end) return std::nullopt;
   return Size{*width, *height};
-}
-
-std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return ending;
 }
 
 /// What the file can hold: EXR keeps the numbers as they are, the others show them.
@@ -134,7 +128,8 @@ void render_command(const RenderArguments& arguments) {
   const double rate = mrays_per_s(result.rays);
   bar.clear();
 
-  io::write_image(arguments.output, picture_for(ending_of(arguments.output), result.image, options.mode));
+  io::write_image(arguments.output,
+                  picture_for(io::lower_extension(arguments.output), result.image, options.mode));
   if (result.dropped_samples > 0)
     print_error("boxwood: warning: {} samples were not finite and were left out\n", result.dropped_samples);
   if (!result.is_complete)
@@ -158,7 +153,7 @@ void add_render(CLI::App& program) {
   command->add_option("-o,--output", arguments->output, "The picture: .png; .exr or .hdr keep all light")
       ->capture_default_str()
       ->check([](const std::string& path) {
-        const std::string ending = ending_of(path);
+        const std::string ending = io::lower_extension(path);
         const bool is_known = ending == ".png" || ending == ".exr" || ending == ".hdr";
         return is_known ? std::string() : path + " does not end in .png, .exr or .hdr";
       });

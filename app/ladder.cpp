@@ -134,7 +134,7 @@ std::string reason_to_stop(const Grower& grower, std::size_t n, double seconds_p
   const double tracing = std::max(kPointSeconds, 1e-9 * last.ns_per_ray * ratio * double(kFewestRays));
   const double seconds = grower.build_seconds * ratio * 1.1 + tracing;
   if (seconds <= seconds_per_point) return {};
-  return fmt::format("stopped before {}, which would take about {:.0f} s", with_commas(double(n)), seconds);
+  return fmt::format("stopped before {}, which would take about {:.0f} s", with_commas(n), seconds);
 }
 
 /// Adds a point to each rung that still takes part.

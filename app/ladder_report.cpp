@@ -84,9 +84,9 @@ std::string growth_table(const std::vector<GrowthReport>& growth) {
   if (sizes.empty()) return {};
   const auto [smallest, largest] = std::minmax_element(sizes.begin(), sizes.end());
 
-  Table table({"rung", "tests ~ N^", "time ~ N^", "tests at " + with_commas(double(*smallest)),
-               "at " + with_commas(double(*largest)), "time at " + with_commas(double(*smallest)),
-               "at " + with_commas(double(*largest))});
+  Table table({"rung", "tests ~ N^", "time ~ N^", "tests at " + with_commas(*smallest),
+               "at " + with_commas(*largest), "time at " + with_commas(*smallest),
+               "at " + with_commas(*largest)});
   for (const GrowthReport& rung : growth) {
     if (rung.points.empty()) continue;
     const GrowthPoint &first = rung.points.front(), &last = rung.points.back();
@@ -120,17 +120,16 @@ std::string growth_words(const LadderReport& report) {
       "  Time grows as N^{:.2f} for sweep SAH. The surplus, N^{:.2f}, is what the caches add: a test among\n"
       "  {} primitives, whose tree lies in memory, costs {:.1f} times one among {}.\n"
       "  Brute force reads its shapes in a row, which caches foresee: N^{:.2f}.\n",
-      sah->time_exponent, surplus, with_commas(double(sah->points.back().n)), std::pow(ratio, surplus),
-      with_commas(double(sah->points.front().n)), brute->time_exponent);
+      sah->time_exponent, surplus, with_commas(sah->points.back().n), std::pow(ratio, surplus),
+      with_commas(sah->points.front().n), brute->time_exponent);
   return text;
 }
 
 }  // namespace
 
 std::string ladder_table(const LadderReport& report) {
-  std::string text =
-      fmt::format("{}: {} {}, {} rays on one thread\n", report.scene, with_commas(double(report.primitives)),
-                  report.kind, with_commas(double(report.rays)));
+  std::string text = fmt::format("{}: {} {}, {} rays on one thread\n", report.scene,
+                                 with_commas(report.primitives), report.kind, with_commas(report.rays));
   text +=
       "  Half of the rays come from the camera; the others leave, in random directions, where such rays "
       "hit.\n";
@@ -139,7 +138,7 @@ std::string ladder_table(const LadderReport& report) {
                     "  Brute force traced the first {} of them; all rungs are compared with it on these, and "
                     "with each "
                     "other beyond.\n",
-                    with_commas(double(report.brute_force_rays)))
+                    with_commas(report.brute_force_rays))
               : "  All rungs are compared with brute force on all of them.\n";
   text += "\n" + rung_table(report);
   text +=

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <string>
 
 #include <fmt/format.h>
@@ -14,6 +15,12 @@ inline std::string with_commas(double value, int decimals = 0) {
   const std::size_t first = text[0] == '-' ? 1 : 0;
   for (std::size_t at = std::min(text.find('.'), text.size()); at > first + 3;) text.insert(at -= 3, ",");
   return text;
+}
+
+/// The same for whole numbers (up to 2^53).
+template <std::integral Int>
+std::string with_commas(Int value) {
+  return with_commas(static_cast<double>(value));
 }
 
 }  // namespace boxwood::app
