@@ -1,7 +1,8 @@
-// boxwood.h: everything of the core library; the order of the includes is the floor plan.
+// boxwood.h: what does one include bring? The rooms from core to scene; the order is the floor plan.
 //
-// Read it from top to bottom: each room stands on those before it. The wings have doors of their own:
-// boxwood/io/load.h and boxwood/io/image.h (files), boxwood/render/render.h (pictures).
+// Read it from top to bottom: each room stands on those before it. The others have doors of their own:
+// boxwood/reference/ (the rivals), boxwood/gallery/gallery.h (scenes made here), boxwood/io/load.h and
+// boxwood/io/image.h (files), boxwood/render/render.h (pictures).
 #pragma once
 
 // clang-format off: the order carries meaning
@@ -56,4 +57,5 @@
 #include "boxwood/scene/description.h"
 #include "boxwood/scene/image.h"
 #include "boxwood/scene/scene.h"
+#include "boxwood/scene/srgb.h"
 #include "boxwood/scene/surface.h"

@@ -1,3 +1,4 @@
+// What rays tell without light: color, normal, depth, occlusion and cost, and how they are shown.
 #include "boxwood/render/aov.h"
 
 #include <gtest/gtest.h>
@@ -5,7 +6,7 @@
 #include "boxwood/render/camera.h"
 #include "boxwood/render/false_color.h"
 #include "boxwood/render/lettering.h"
-#include "boxwood/render/texture.h"
+#include "boxwood/scene/srgb.h"
 #include "trace.h"
 
 namespace boxwood::render {

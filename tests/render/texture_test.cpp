@@ -1,3 +1,4 @@
+// Textures: which texel, mixed how.
 #include "boxwood/render/texture.h"
 
 #include <gtest/gtest.h>
@@ -47,13 +48,6 @@ TEST(Texture, AnyCoordinateGivesSomeColor) {
     EXPECT_TRUE(is_finite(color) && min_component(color) >= 0 && max_component(color) <= 1) << x;
   }
   EXPECT_EQ(texture_color(Texture{}, {0.5f, 0.5f}), (Vec3{1, 1, 1}));
-}
-
-TEST(Srgb, RoundTrip) {
-  for (int code = 0; code < 256; ++code)
-    EXPECT_NEAR(srgb_from_linear(linear_from_srgb(static_cast<float>(code) / 255)),
-                static_cast<float>(code) / 255, 1e-5f);
-  EXPECT_NEAR(linear_from_srgb(0.5f), 0.21404f, 1e-5f);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "boxwood/scene/srgb.h"
+
 namespace boxwood::io {
 namespace {
 
@@ -45,10 +47,6 @@ Xyz integrate(const Spectrum& spectrum) {
 /// Colors outside of what RGB can show are moved to its border.
 Vec3 clamp_negative(Vec3 rgb) {
   return max(rgb, Vec3{0, 0, 0});
-}
-
-double linear_of_srgb(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 }  // namespace
@@ -100,7 +98,10 @@ Vec3 conductor_reflectance(Vec3 eta, Vec3 k) {
 Vec3 average_color(const Texture& texture) {
   if (texture.texels.empty()) return {0, 0, 0};
   std::array<double, 256> linear;
-  for (int i = 0; i < 256; ++i) linear[i] = texture.is_srgb ? linear_of_srgb(i / 255.0) : i / 255.0;
+  for (int i = 0; i < 256; ++i) {
+    const float code = static_cast<float>(i) / 255;
+    linear[i] = texture.is_srgb ? linear_from_srgb(code) : code;
+  }
   double sum[3] = {0, 0, 0};
   for (const auto& texel : texture.texels)
     for (int c = 0; c < 3; ++c) sum[c] += linear[texel[c]];

@@ -9,6 +9,7 @@
 
 #include "boxwood/io/file_bytes.h"
 #include "boxwood/io/picture_check.h"
+#include "boxwood/scene/srgb.h"
 
 namespace boxwood::io {
 namespace {
@@ -28,14 +29,6 @@ std::string one_line(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\r') c = ' ';
   return text.empty() ? "unknown reason" : text;
-}
-
-// IEC 61966-2-1.
-float srgb_from_linear(float x) {
-  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-}
-float linear_from_srgb(float x) {
-  return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
 // 0 to 255, NaN as 0.

@@ -2,18 +2,12 @@
 
 #include "boxwood/render/material.h"
 #include "boxwood/render/sky.h"
-#include "boxwood/render/texture.h"
 #include "boxwood/render/warp.h"
+#include "boxwood/scene/srgb.h"
 #include "boxwood/scene/surface.h"
 
 namespace boxwood::render {
 namespace {
-
-void store(std::span<float> out, Vec3 v) {
-  out[0] = v.x;
-  out[1] = v.y;
-  out[2] = v.z;
-}
 
 /// The textbook's ray tracer: each pixel takes the color of the shape that its ray hits. A lamp shows the hue
 /// of its light, and where nothing is hit stands the sky, if the scene has one.

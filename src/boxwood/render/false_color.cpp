@@ -5,7 +5,7 @@
 #include <string>
 
 #include "boxwood/render/lettering.h"
-#include "boxwood/render/texture.h"
+#include "boxwood/scene/srgb.h"
 
 namespace boxwood::render {
 namespace {

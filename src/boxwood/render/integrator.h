@@ -23,4 +23,11 @@ class Integrator {
   virtual bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, std::uint64_t& rays) const = 0;
 };
 
+/// For samples of three floats.
+inline void store(std::span<float> out, Vec3 v) {
+  out[0] = v.x;
+  out[1] = v.y;
+  out[2] = v.z;
+}
+
 }  // namespace boxwood::render

@@ -21,12 +21,6 @@ float power_heuristic(float a, float b) {
   return 1 / (1 + ratio * ratio);
 }
 
-void store(std::span<float> out, Vec3 v) {
-  out[0] = v.x;
-  out[1] = v.y;
-  out[2] = v.z;
-}
-
 class PathTracer final : public Integrator {
  public:
   PathTracer(const Scene& scene, const Camera& camera) : scene_(scene), lights_(scene, camera) {

@@ -1,5 +1,7 @@
 #include "boxwood/render/texture.h"
 
+#include "boxwood/scene/srgb.h"
+
 namespace boxwood::render {
 namespace {
 
@@ -43,14 +45,6 @@ Vec3 texture_color(const Texture& texture, Vec2 uv) {
   const Vec3 upper = texel(x0, y0) * (1 - right) + texel(x1, y0) * right;
   const Vec3 lower = texel(x0, y1) * (1 - right) + texel(x1, y1) * right;
   return upper * (1 - down) + lower * down;
-}
-
-float linear_from_srgb(float code) {
-  return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
-}
-
-float srgb_from_linear(float light) {
-  return light <= 0.0031308f ? 12.92f * light : 1.055f * std::pow(light, 1 / 2.4f) - 0.055f;
 }
 
 }  // namespace boxwood::render

@@ -10,8 +10,4 @@ namespace boxwood::render {
 /// there are no texels.
 Vec3 texture_color(const Texture& texture, Vec2 uv);
 
-/// sRGB code in [0, 1] to linear light, and back. IEC 61966-2-1.
-float linear_from_srgb(float code);
-float srgb_from_linear(float light);
-
 }  // namespace boxwood::render
