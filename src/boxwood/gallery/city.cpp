@@ -19,14 +19,8 @@ float lot_start(std::uint64_t lot) {
 }
 
 std::vector<MaterialId> add_facades(SceneDesc& desc) {
-  struct Facade {
-    const char* name;
-    Vec3 color;
-    Material::Kind kind;
-    float roughness;
-  };
   using enum Material::Kind;
-  constexpr Facade kFacades[] = {
+  constexpr Paint kFacades[] = {
       {"limestone", {0.76f, 0.70f, 0.60f}, matte, 0},
       {"concrete", {0.56f, 0.56f, 0.55f}, matte, 0},
       {"brick", {0.48f, 0.20f, 0.13f}, matte, 0},
@@ -37,14 +31,7 @@ std::vector<MaterialId> add_facades(SceneDesc& desc) {
       {"bronze", {0.60f, 0.42f, 0.26f}, metal, 0.25f},
   };
   std::vector<MaterialId> ids;
-  for (const Facade& facade : kFacades) {
-    Material material;
-    material.name = facade.name;
-    material.kind = facade.kind;
-    material.color = facade.color;
-    material.roughness = facade.roughness;
-    ids.push_back(desc.add(std::move(material)));
-  }
+  for (const Paint& facade : kFacades) ids.push_back(add_paint(desc, facade));
   return ids;
 }
 
@@ -78,12 +65,9 @@ SceneDesc make_city(std::uint64_t towers) {
   }
   desc.add(Geometry{std::move(cuboids), {}, std::move(materials), "towers"});
 
-  Material asphalt;
-  asphalt.name = "asphalt";
-  asphalt.color = {0.27f, 0.26f, 0.25f};
   const float edge = 4 * width + 400;
   desc.add(std::vector<Quad>{{{-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}, {-edge, 0, -edge}}},
-           desc.add(std::move(asphalt)));
+           add_paint(desc, {"asphalt", {0.27f, 0.26f, 0.25f}}));
 
   // From above a corner of the town, never farther off than a town of 60 lots asks for.
   const float reach = min(width, 75);

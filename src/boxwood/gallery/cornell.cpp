@@ -10,14 +10,6 @@ namespace boxwood::gallery {
 
 namespace {
 
-MaterialId add_paint(SceneDesc& desc, const char* name, Vec3 color, Vec3 emission = {}) {
-  Material paint;
-  paint.name = name;
-  paint.color = color;
-  paint.emission = emission;
-  return desc.add(std::move(paint));
-}
-
 void add_quads(SceneDesc& desc, const char* name, std::vector<Quad> quads, MaterialId material) {
   desc.add(Geometry{std::move(quads), material, {}, name});
 }
@@ -37,10 +29,11 @@ std::vector<Quad> block(const Vec3 (&top)[4]) {
 
 SceneDesc make_cornell() {
   SceneDesc desc;
-  const MaterialId white = add_paint(desc, "white", {0.725f, 0.710f, 0.680f});
-  const MaterialId red = add_paint(desc, "red", {0.630f, 0.065f, 0.050f});
-  const MaterialId green = add_paint(desc, "green", {0.140f, 0.450f, 0.091f});
-  const MaterialId lamp = add_paint(desc, "lamp", {0.78f, 0.78f, 0.78f}, {29, 24, 17});
+  const MaterialId white = add_paint(desc, {"white", {0.725f, 0.710f, 0.680f}});
+  const MaterialId red = add_paint(desc, {"red", {0.630f, 0.065f, 0.050f}});
+  const MaterialId green = add_paint(desc, {"green", {0.140f, 0.450f, 0.091f}});
+  const MaterialId lamp =
+      desc.add(Material{.name = "lamp", .color = {0.78f, 0.78f, 0.78f}, .emission = {29, 24, 17}});
 
   // The room. Seen by the camera the red wall, at large x, is on the left.
   add_quads(desc, "floor, ceiling, back",

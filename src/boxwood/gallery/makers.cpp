@@ -1,4 +1,4 @@
-// makers.cpp: what several scenes share: a camera, a palette, a sky and two pieces of arithmetic.
+// makers.cpp: what do several scenes share? A camera, paints, a sky and two pieces of arithmetic.
 
 #include "boxwood/gallery/makers.h"
 
@@ -31,13 +31,16 @@ Vec3 in_unit_ball(Random& random) {
   }
 }
 
+MaterialId add_paint(SceneDesc& desc, const Paint& paint) {
+  Material material;
+  material.name = paint.name;
+  material.kind = paint.kind;
+  material.color = paint.color;
+  material.roughness = paint.roughness;
+  return desc.add(std::move(material));
+}
+
 std::vector<MaterialId> add_palette(SceneDesc& desc) {
-  struct Paint {
-    const char* name;
-    Vec3 color;
-    Material::Kind kind;
-    float roughness;
-  };
   using enum Material::Kind;
   constexpr Paint kPaints[] = {
       {"coral", {0.86f, 0.23f, 0.16f}, matte, 0},      {"amber", {0.93f, 0.52f, 0.08f}, plastic, 0.1f},
@@ -46,14 +49,7 @@ std::vector<MaterialId> add_palette(SceneDesc& desc) {
       {"plum", {0.34f, 0.09f, 0.27f}, matte, 0},       {"ivory", {0.88f, 0.85f, 0.78f}, plastic, 0.05f},
   };
   std::vector<MaterialId> ids;
-  for (const Paint& paint : kPaints) {
-    Material material;
-    material.name = paint.name;
-    material.kind = paint.kind;
-    material.color = paint.color;
-    material.roughness = paint.roughness;
-    ids.push_back(desc.add(std::move(material)));
-  }
+  for (const Paint& paint : kPaints) ids.push_back(add_paint(desc, paint));
   return ids;
 }
 

@@ -27,6 +27,15 @@ double cube_root(double x);
 /// Uniform in the unit ball, by trying until a point of the cube falls inside.
 Vec3 in_unit_ball(Random& random);
 
+/// What most materials here are made of.
+struct Paint {
+  const char* name;
+  Vec3 color;
+  Material::Kind kind = Material::Kind::matte;
+  float roughness = 0;
+};
+MaterialId add_paint(SceneDesc& desc, const Paint& paint);
+
 /// Adds matte and glossy materials in eight colors that go well together; returns their ids.
 std::vector<MaterialId> add_palette(SceneDesc& desc);
 

@@ -15,15 +15,6 @@ namespace {
 
 using Kind = Material::Kind;
 
-MaterialId add_material(SceneDesc& desc, const char* name, Kind kind, Vec3 color, float roughness = 0) {
-  Material material;
-  material.name = name;
-  material.kind = kind;
-  material.color = color;
-  material.roughness = roughness;
-  return desc.add(std::move(material));
-}
-
 void add_sphere(SceneDesc& desc, const char* name, float x, float z, float radius, MaterialId material) {
   desc.add(Geometry{std::vector<Sphere>{{{x, radius, z}, radius}}, material, {}, name});
 }
@@ -85,17 +76,17 @@ SceneDesc make_stilllife() {
   SceneDesc desc;
 
   // Warm colors against the teal of the pot.
-  const MaterialId paper = add_material(desc, "paper", Kind::matte, {0.70f, 0.57f, 0.45f});
-  const MaterialId teal = add_material(desc, "teal glaze", Kind::plastic, {0.018f, 0.26f, 0.27f}, 0.04f);
-  const MaterialId gold = add_material(desc, "gold", Kind::metal, {1.0f, 0.72f, 0.29f}, 0.16f);
-  const MaterialId copper = add_material(desc, "brushed copper", Kind::metal, {0.93f, 0.51f, 0.37f}, 0.28f);
-  const MaterialId chrome = add_material(desc, "chrome", Kind::mirror, {0.9f, 0.9f, 0.9f});
-  const MaterialId glass = add_material(desc, "glass", Kind::glass, {1, 1, 1});
-  const MaterialId amber = add_material(desc, "amber glass", Kind::glass, {1.0f, 0.62f, 0.18f});
-  const MaterialId coral = add_material(desc, "coral clay", Kind::matte, {0.80f, 0.16f, 0.09f});
-  const MaterialId ivory = add_material(desc, "ivory", Kind::plastic, {0.86f, 0.80f, 0.69f}, 0.08f);
-  const MaterialId mustard = add_material(desc, "mustard clay", Kind::matte, {0.80f, 0.46f, 0.05f});
-  const MaterialId plum = add_material(desc, "plum glaze", Kind::plastic, {0.22f, 0.03f, 0.12f}, 0.05f);
+  const MaterialId paper = add_paint(desc, {"paper", {0.70f, 0.57f, 0.45f}});
+  const MaterialId teal = add_paint(desc, {"teal glaze", {0.018f, 0.26f, 0.27f}, Kind::plastic, 0.04f});
+  const MaterialId gold = add_paint(desc, {"gold", {1.0f, 0.72f, 0.29f}, Kind::metal, 0.16f});
+  const MaterialId copper = add_paint(desc, {"brushed copper", {0.93f, 0.51f, 0.37f}, Kind::metal, 0.28f});
+  const MaterialId chrome = add_paint(desc, {"chrome", {0.9f, 0.9f, 0.9f}, Kind::mirror});
+  const MaterialId glass = add_paint(desc, {"glass", {1, 1, 1}, Kind::glass});
+  const MaterialId amber = add_paint(desc, {"amber glass", {1.0f, 0.62f, 0.18f}, Kind::glass});
+  const MaterialId coral = add_paint(desc, {"coral clay", {0.80f, 0.16f, 0.09f}});
+  const MaterialId ivory = add_paint(desc, {"ivory", {0.86f, 0.80f, 0.69f}, Kind::plastic, 0.08f});
+  const MaterialId mustard = add_paint(desc, {"mustard clay", {0.80f, 0.46f, 0.05f}});
+  const MaterialId plum = add_paint(desc, {"plum glaze", {0.22f, 0.03f, 0.12f}, Kind::plastic, 0.05f});
 
   desc.add(Geometry{backdrop(), paper, {}, "backdrop"});
 

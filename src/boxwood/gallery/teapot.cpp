@@ -1,10 +1,13 @@
-// teapot.cpp: Newell's table, unfolded by its symmetries; then patches to triangles with shared borders.
+// teapot.cpp: how do 34 rows of numbers become a teapot? Newell's table is unfolded by its symmetries, then
+// its patches become triangles with shared borders.
 
 #include "boxwood/gallery/teapot.h"
 
 #include <bit>
 #include <span>
 #include <unordered_map>
+
+#include "boxwood/shape/vec3d.h"
 
 namespace boxwood::gallery {
 
@@ -102,16 +105,7 @@ void add_tube(const Section (&sections)[N], std::vector<BezierPatch>& patches) {
   }
 }
 
-struct Vec3d {
-  double x = 0, y = 0, z = 0;
-};
-
-Vec3d cross(Vec3d a, Vec3d b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(Vec3d a) {
-  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
-}
+using detail::Vec3d;
 
 using Weights = std::array<double, 4>;
 
@@ -150,14 +144,12 @@ Vec3 normal_at(const BezierPatch& patch, double u, double v) {
   // At a pole a whole row is one point, and d/dv vanishes. Close to it, d/dv is its own slope in u times the
   // way to the pole, so that slope has the direction that d/dv tends to; on the way to u = 1 with the sign
   // turned.
-  if (length(dv) < 1e-9) {
+  if (dot(dv, dv) < 1e-18) {
     dv = blend(patch, bernstein_slope(u), bernstein_slope(v));
-    if (u > 0.5) dv = {-dv.x, -dv.y, -dv.z};
+    if (u > 0.5) dv = dv * -1;
   }
 
-  const Vec3d n = cross(du, dv);
-  const double l = length(n);
-  return {float(n.x / l), float(n.y / l), float(n.z / l)};
+  return narrow(unit(cross(du, dv)));
 }
 
 /// Gives each position one vertex, and adds up the normals of the patches that meet there.

@@ -1,7 +1,7 @@
 // vec3d.h: what is a vector in double?
 //
 // Where a shape squares or multiplies lengths, floats would overflow at 1e20 and vanish at 1e-20; in double
-// the product of any six floats still fits. For the insides of this room only.
+// the product of any six floats still fits. For the insides of functions, never in an interface.
 #pragma once
 
 #include "boxwood/core/vec.h"
