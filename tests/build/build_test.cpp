@@ -17,10 +17,10 @@
 namespace boxwood {
 namespace {
 
-using testing::box_sets;
-using testing::BoxSet;
-using testing::soup_boxes;
-using testing::terrain_boxes;
+using test::box_sets;
+using test::BoxSet;
+using test::soup_boxes;
+using test::terrain_boxes;
 
 constexpr Method kMethods[] = {Method::longest_axis, Method::binned_sah, Method::sweep_sah};
 

@@ -6,8 +6,8 @@
 namespace boxwood {
 namespace {
 
-using testing::kModels;
-using testing::OnModel;
+using test::kModels;
+using test::OnModel;
 
 /// What one ray has found so far.
 struct Found {
@@ -87,7 +87,7 @@ TEST_P(BruteForceOnModel, LoadsWhatTheFileHolds) {
 }
 
 TEST_P(BruteForceOnModel, ClosestHitAndAnyHitAreEqual) {
-  const std::vector<Ray> rays = testing::model_rays(scene(), 10'000);
+  const std::vector<Ray> rays = test::model_rays(scene(), 10'000);
   const std::vector<Hit> expected = search_without_trees(scene(), rays);
   std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -100,7 +100,7 @@ TEST_P(BruteForceOnModel, ClosestHitAndAnyHitAreEqual) {
   EXPECT_GT(hits, rays.size() / 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, BruteForceOnModel, ::testing::ValuesIn(kModels), testing::model_name);
+INSTANTIATE_TEST_SUITE_P(Models, BruteForceOnModel, ::testing::ValuesIn(kModels), test::model_name);
 
 }  // namespace
 }  // namespace boxwood

@@ -14,8 +14,8 @@
 namespace boxwood {
 namespace {
 
-using testing::kModels;
-using testing::OnModel;
+using test::kModels;
+using test::OnModel;
 
 using detail::Vec3d;
 using detail::widen;
@@ -114,7 +114,7 @@ class EmbreeOnModel : public OnModel {};
 TEST_P(EmbreeOnModel, EveryDisagreementHasAReason) {
   const EmbreePeer peer(scene());
   const Scene::Parts& parts = scene().parts();
-  const std::vector<Ray> rays = testing::model_rays(scene(), 1'000'000);
+  const std::vector<Ray> rays = test::model_rays(scene(), 1'000'000);
   const double size = boxwood::length(scene().bounds().extent());
   std::vector<Hit> hits(rays.size());
   scene().closest_hit(rays, hits);
@@ -176,13 +176,13 @@ TEST_P(EmbreeOnModel, EveryDisagreementHasAReason) {
 
 TEST_P(EmbreeOnModel, AnyHitDiffersNoMoreThanClosestHitDoes) {
   const EmbreePeer peer(scene());
-  const std::vector<Ray> rays = testing::model_rays(scene(), 1'000'000);
+  const std::vector<Ray> rays = test::model_rays(scene(), 1'000'000);
   std::size_t different = 0;
   for (const Ray& ray : rays) different += scene().any_hit(ray) != peer.any_hit(ray);
   EXPECT_LE(different, rays.size() / 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, EmbreeOnModel, ::testing::ValuesIn(kModels), testing::model_name);
+INSTANTIATE_TEST_SUITE_P(Models, EmbreeOnModel, ::testing::ValuesIn(kModels), test::model_name);
 
 }  // namespace
 }  // namespace boxwood

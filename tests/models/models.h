@@ -16,7 +16,7 @@
 #include "boxwood/io/load.h"
 #include "boxwood/scene/scene.h"
 
-namespace boxwood::testing {
+namespace boxwood::test {
 
 struct Model {
   const char* path;
@@ -80,4 +80,4 @@ inline std::vector<Ray> model_rays(const Scene& scene, std::size_t count) {
   return rays;
 }
 
-}  // namespace boxwood::testing
+}  // namespace boxwood::test

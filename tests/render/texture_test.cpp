@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "boxwood/scene/srgb.h"
+
 namespace boxwood::render {
 namespace {
 

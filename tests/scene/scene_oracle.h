@@ -9,7 +9,7 @@
 #include "boxwood/scene/parts.h"
 #include "boxwood/shape/gate.h"
 
-namespace boxwood::testing {
+namespace boxwood::test {
 
 struct OracleSink {
   float t_max;
@@ -72,4 +72,4 @@ inline std::vector<Hit> all_hits_without_trees(const Scene& scene, const Ray& ra
   return hits;
 }
 
-}  // namespace boxwood::testing
+}  // namespace boxwood::test

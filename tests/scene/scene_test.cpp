@@ -1,3 +1,4 @@
+// Scenes against a search without any tree, batches against single rays, and what is refused at the door.
 #include "boxwood/scene/scene.h"
 
 #include <thread>
@@ -10,7 +11,7 @@
 namespace boxwood {
 namespace {
 
-using testing::all_hits_without_trees;
+using test::all_hits_without_trees;
 
 TriangleMesh random_mesh(Random& random, int triangles, float size) {
   TriangleMesh mesh;

@@ -8,7 +8,7 @@
 #include "boxwood/core/box.h"
 #include "boxwood/core/random.h"
 
-namespace boxwood::testing {
+namespace boxwood::test {
 
 struct BoxSet {
   std::string name;
@@ -116,4 +116,4 @@ inline std::vector<BoxSet> box_sets() {
   return sets;
 }
 
-}  // namespace boxwood::testing
+}  // namespace boxwood::test
