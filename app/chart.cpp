@@ -85,8 +85,8 @@ LogAxis axis_over(const Panel& panel, double std::pair<double, double>::*coordin
   return axis;
 }
 
-/// Moves labels apart: in order from the top, none nearer to the one above than kLabelHeight, all inside the
-/// frame.
+/// Moves labels apart: in order from the top,
+/// none nearer to the one above than kLabelHeight, all inside the frame.
 void spread(std::vector<std::pair<double, std::size_t>>& labels, double top, double bottom) {
   std::sort(labels.begin(), labels.end());
   for (double free = top; auto& [y, series] : labels) {

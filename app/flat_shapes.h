@@ -17,8 +17,8 @@ namespace boxwood::app {
 using FlatShapes =
     std::variant<std::vector<Triangle>, std::vector<Sphere>, std::vector<Cuboid>, std::vector<AnyShape>>;
 
-/// In the order of instances, and of primitives within each. Throws std::invalid_argument as check(desc)
-/// does.
+/// In the order of instances, and of primitives within each.
+/// Throws std::invalid_argument as check(desc) does.
 FlatShapes flatten(const SceneDesc& desc);
 
 std::size_t shape_count(const FlatShapes& shapes);

@@ -85,8 +85,8 @@ void climb_scene(const std::vector<S>& shapes, std::span<const Ray> rays, const 
                  LadderReport& report) {
   std::vector<ShapeHit> truth(rays.size()), hits(rays.size());
   const auto recipes = rung_recipes<S>();
-  std::size_t known =
-      0;  // truth[0, known) is filled: by brute force, and beyond its rays by the first to come that far
+  // truth[0, known) is filled: by brute force, and beyond its rays by the first to come that far.
+  std::size_t known = 0;
   for (std::size_t r = 0; r < recipes.size(); ++r) {
     tell(progress, "rungs", double(r) / double(recipes.size()));
     const bool is_brute_force = r == 0;
@@ -201,8 +201,8 @@ std::vector<GrowthReport> grow(const std::string& family, const std::vector<std:
   return fitted(growers);
 }
 
-/// The family of scenes that `name` belongs to, where its size is the number of primitives; else random
-/// triangles.
+/// The family of scenes that `name` belongs to,
+/// where its size is the number of primitives; else random triangles.
 std::string growth_family(const std::string& name) {
   const std::string family = name.substr(0, name.find(':'));
   return family == "spheres" ? family : "soup";

@@ -31,8 +31,8 @@ struct RungReport {
   double mrays_per_s = 0;
   double box_tests_per_ray = 0;
   double shape_tests_per_ray = 0;
-  double repeated_tests_per_ray =
-      0;  ///< Of shape_tests_per_ray: of a shape that the same ray had tested before.
+  /// Of shape_tests_per_ray: of a shape that the same ray had tested before.
+  double repeated_tests_per_ray = 0;
   double bytes_per_primitive = 0;  ///< What the structure adds to the shapes.
   bool agrees = true;              ///< With brute force, to the bit, on every ray that brute force traced.
 };
@@ -57,8 +57,8 @@ struct LadderReport {
   std::string kind;  ///< Of the primitives: "triangles", ...
   std::size_t primitives = 0;
   std::size_t rays = 0;
-  std::size_t brute_force_rays =
-      0;  ///< The first so many of them; fewer than `rays` where all would take too long.
+  /// The first so many of them; fewer than `rays` where all would take too long.
+  std::size_t brute_force_rays = 0;
   std::vector<RungReport> rungs;
   std::string growth_family;  ///< "soup": the scenes were soup:100, soup:320, ...
   std::vector<GrowthReport> growth;
@@ -71,8 +71,8 @@ struct LadderReport {
 LadderReport climb(const std::string& name, const SceneDesc& scene, const LadderOptions& options,
                    const Progress& progress);
 
-/// The slope of the line through (log x, log y) with the least squared error; 0 with fewer than two different
-/// x.
+/// The slope of the line through (log x, log y) with the least squared error;
+/// 0 with fewer than two different x.
 double fit_exponent(const std::vector<std::pair<double, double>>& points);
 
 }  // namespace boxwood::app

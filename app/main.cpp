@@ -1,7 +1,7 @@
 // main.cpp: where does the program start, and how does it end?
 //
-// Exit codes: 0 done, 1 failed, 2 wrong usage. Whatever goes wrong is one line on stderr that starts with
-// "boxwood: ".
+// Exit codes: 0 done, 1 failed, 2 wrong usage.
+// Whatever goes wrong is one line on stderr that starts with "boxwood: ".
 #include <cstdio>
 #include <exception>
 #include <new>

@@ -36,8 +36,8 @@ void ProgressBar::update(std::string_view stage, double done, std::string_view d
     return std::chrono::duration<double>(now - then).count();
   };
 
-  // A new stage starts its own clock. The first line about it waits for its interval; the bar appears at
-  // once.
+  // A new stage starts its own clock.
+  // The first line about it waits for its interval; the bar appears at once.
   if (stage != stage_) {
     stage_ = stage;
     stage_start_ = last_shown_ = now;

@@ -25,8 +25,8 @@ Vec3 rgb_of_spectrum(std::span<const SpectrumSample> samples);
 /// The color of a black body, scaled to luminance 1. Precondition: kelvin > 0.
 Vec3 rgb_of_blackbody(double kelvin);
 
-/// The share of light that a conductor with complex index of refraction eta + ik reflects at normal
-/// incidence.
+/// The share of light that a conductor with complex index
+/// of refraction eta + ik reflects at normal incidence.
 Vec3 conductor_reflectance(Vec3 eta, Vec3 k);
 
 /// The mean of a texture's pixels, in linear light, alpha left out.

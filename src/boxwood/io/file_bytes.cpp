@@ -13,8 +13,8 @@
 namespace boxwood::io {
 
 std::string read_file(const std::filesystem::path& path) {
-  // Say plainly what is wrong with the path itself; streams would open a folder and fail later without a
-  // reason.
+  // Say plainly what is wrong with the path itself;
+  // streams would open a folder and fail later without a reason.
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found)

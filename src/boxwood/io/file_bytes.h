@@ -11,8 +11,8 @@
 
 namespace boxwood::io {
 
-/// The bytes of a file. Throws FileError when it does not exist, is not a regular file, is empty, or cannot
-/// be read.
+/// The bytes of a file. Throws FileError when it does not exist,
+/// is not a regular file, is empty, or cannot be read.
 std::string read_file(const std::filesystem::path& path);
 
 /// The text without the UTF-8 byte order mark that some editors put before it.

@@ -20,8 +20,8 @@ SceneDesc load_stl(const std::filesystem::path& path, Executor& executor);
 SceneDesc load_gltf(const std::filesystem::path& path, Executor& executor);  ///< .gltf and .glb
 SceneDesc load_pbrt(const std::filesystem::path& path, Executor& executor);
 
-/// The one mesh of a PLY file, which pbrt scenes refer to. Throws FileError; a file with no triangles is an
-/// error.
+/// The one mesh of a PLY file, which pbrt scenes refer to.
+/// Throws FileError; a file with no triangles is an error.
 TriangleMesh read_ply_mesh(const std::filesystem::path& path);
 
 }  // namespace boxwood::io

@@ -64,8 +64,8 @@ class Builder {
   }
 
  private:
-  /// The nodes on top: those of the default scene, of the first scene, or all without a parent when there is
-  /// no scene.
+  /// The nodes on top: those of the default scene, of the first scene,
+  /// or all without a parent when there is no scene.
   std::vector<int> root_nodes() const {
     if (!model_.scenes.empty()) {
       const int scene = model_.defaultScene >= 0 ? model_.defaultScene : 0;
@@ -212,8 +212,8 @@ class Builder {
   const File& file_;
   const tinygltf::Model& model_;
   SceneDesc desc_;
-  std::vector<std::optional<std::vector<GeometryId>>>
-      geometries_;  // by mesh: its primitives, once it was needed
+  // By mesh: its primitives, once it was needed.
+  std::vector<std::optional<std::vector<GeometryId>>> geometries_;
 };
 
 }  // namespace

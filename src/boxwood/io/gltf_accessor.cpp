@@ -37,8 +37,8 @@ T load(const std::byte* at) {  // elements need not be aligned
   return value;
 }
 
-/// Finds `count` elements of `size` bytes that begin `offset` bytes into a view. A stride of 0: as the view
-/// says.
+/// Finds `count` elements of `size` bytes that begin `offset` bytes into a view:
+/// one behind the other, or apart as the view says.
 Elements locate(const File& file, int view, std::size_t offset, std::size_t count, std::size_t size,
                 bool use_view_stride, const std::string& where) {
   const std::span<const std::byte> bytes = view_bytes(file, view, where);
@@ -111,8 +111,8 @@ bool is_unsigned(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-/// Calls `take(element, bytes)` for each element of an accessor, and again for those that its sparse part
-/// replaces.
+/// Calls `take(element, bytes)` for each element of an accessor,
+/// and again for those that its sparse part replaces.
 template <class Take>
 void for_each_element(const File& file, const tinygltf::Accessor& accessor, std::size_t size,
                       const std::string& where, const Take& take) {

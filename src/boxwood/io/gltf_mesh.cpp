@@ -16,8 +16,8 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
   return found != primitive.attributes.end() ? found->second : -1;
 }
 
-/// Triangles from a list, strip or fan of vertices (specification, section 3.7.2.1). What is left over makes
-/// none.
+/// Triangles from a list, strip or fan of vertices (specification, section 3.7.2.1).
+/// What is left over makes none.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::uint32_t>& v, int mode) {
   std::vector<std::array<std::uint32_t, 3>> out;
   const std::size_t n = v.size();

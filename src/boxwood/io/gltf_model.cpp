@@ -79,8 +79,8 @@ void check_depth(const File& file, std::string_view json) {
   }
 }
 
-// What tinygltf calls for files beside the model: only regular files, and only by paths that start at the
-// model's folder.
+// What tinygltf calls for files beside the model:
+// only regular files, and only by paths that start at the model's folder.
 bool file_exists(const std::string& path, void* base) {
   const std::string& folder = *static_cast<const std::string*>(base);
   std::error_code ignored;
@@ -103,8 +103,8 @@ bool write_nothing(std::string*, const std::string&, const std::vector<unsigned 
   return false;
 }
 
-/// Keeps a picture's bytes. Those in a buffer stay there: tinygltf hands them over without looking whether
-/// they exist.
+/// Keeps a picture's bytes. Those in a buffer stay there:
+/// tinygltf hands them over without looking whether they exist.
 bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void*) {
   if (image->bufferView < 0) image->image.assign(bytes, bytes + size);

@@ -49,8 +49,8 @@ void check_shape(const std::string& path, const Image& image) {
                         std::to_string(image.pixels.size()) + " numbers cannot be written");
 }
 
-// The format that OpenImageIO shall try: by the first bytes, since a name may be missing or lie, else by the
-// name's ending.
+// The format that OpenImageIO shall try:
+// by the first bytes, since a name may be missing or lie, else by the name's ending.
 std::string format_of(std::string_view bytes, const std::string& name) {
   constexpr struct {
     std::string_view magic;
@@ -180,8 +180,8 @@ void write_image(const std::filesystem::path& path, const Image& image) {
     spec.channelnames = image.channel_names;
   spec.attribute("oiio:ColorSpace", is_png ? "sRGB" : "Linear");
   if (is_png) spec.attribute("oiio:UnassociatedAlpha", 1);
-  // OpenImageIO puts the time of writing into an EXR unless one is given; equal pictures are to be equal
-  // files.
+  // OpenImageIO puts the time of writing into an EXR unless one is given;
+  // equal pictures are to be equal files.
   spec.attribute("DateTime", "1970:01:01 00:00:00");
 
   // Encode into memory, so that a full disk meets one writer that knows how to clean up.

@@ -28,8 +28,8 @@ float roughness_of(float exponent) {
   return min(1.0f, std::sqrt(2 / (exponent + 2)));
 }
 
-// MTL describes light models of 1992 rather than surfaces; this picks the kind of surface that its words fit
-// best.
+// MTL describes light models of 1992 rather than surfaces;
+// this picks the kind of surface that its words fit best.
 Material to_material(const tinyobj::material_t& source) {
   const Vec3 diffuse = to_color(source.diffuse), specular = to_color(source.specular);
   const bool has_reflections = source.illum >= 3 && source.illum <= 9;

@@ -146,8 +146,8 @@ class ObjReader {
   void finish_geometry() {
     if (mesh_.indices.empty()) return;
 
-    // Gather normals and texture coordinates when any corner has one; the others get a zero, which load()
-    // mends.
+    // Gather normals and texture coordinates when any corner has one;
+    // the others get a zero, which load() mends.
     bool has_normals = false, has_uvs = false;
     for (const Corner& corner : corners_) {
       has_normals |= corner.normal != kNone;

@@ -267,8 +267,8 @@ void Interpreter::read_mesh(const MeshFile& file) {
 }
 
 void Interpreter::read_files() {
-  // All files at once; what goes wrong is kept by file, so that the message does not depend on who came
-  // first.
+  // All files at once; what goes wrong is kept by file,
+  // so that the message does not depend on who came first.
   const std::size_t meshes = mesh_files_.size(), files = meshes + picture_of_texture_.size();
   std::vector<std::exception_ptr> errors(files);
   parallel_for(executor_, 0, files, 1, [&](std::size_t i) {

@@ -25,8 +25,8 @@ MaterialValue clear() {
   return value;
 }
 
-/// GGX alpha of a roughness in [0, 1]. Version 3 of pbrt fits a polynomial of the logarithm, version 4 takes
-/// the root.
+/// GGX alpha of a roughness in [0, 1].
+/// Version 3 of pbrt fits a polynomial of the logarithm, version 4 takes the root.
 float alpha_of_roughness(float roughness, bool is_version_3) {
   if (!(roughness > 0)) return 0;
   if (!is_version_3) return std::sqrt(roughness);

@@ -16,8 +16,8 @@ struct Type {
   std::size_t multiple_of;  // numbers come in groups of this many
 };
 
-// Both versions of the format; 3 says "color", "point" and "vector" for what 4 calls "rgb", "point3" and
-// "vector3".
+// Both versions of the format;
+// 3 says "color", "point" and "vector" for what 4 calls "rgb", "point3" and "vector3".
 constexpr std::array kTypes = {
     Type{"integer", Value::numbers, 1},
     Type{"float", Value::numbers, 1},
@@ -137,8 +137,8 @@ Parameter read_parameter(Tokenizer& tokenizer, Token& token) {
 void ParameterList::add_defaults(const ParameterList& defaults) {
   for (const Parameter& parameter : defaults.parameters_) {
     parameters_.push_back(parameter);
-    parameters_.back().is_used =
-        true;  // given for all subjects of a kind, so not all of them have a use for it
+    // Given for all subjects of a kind, so not all of them have a use for it.
+    parameters_.back().is_used = true;
   }
 }
 

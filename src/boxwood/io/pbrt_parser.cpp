@@ -63,8 +63,8 @@ constexpr std::array kGrammar = {
     Grammar{"MediumInterface", 0, 1, 2, false},
 };
 
-// A scene of a film has thousands of includes; a file that includes another twice, which does the same, has
-// 2^n.
+// A scene of a film has thousands of includes;
+// a file that includes another twice, which does the same, has 2^n.
 constexpr std::size_t kMostNested = 64, kMostIncludes = 20000;
 
 const Grammar* find_grammar(const Token& token) {
@@ -116,8 +116,8 @@ void Parser::include(const Directive& directive) {
   try {
     open(path);
   } catch (const FileError& error) {
-    // An error in the first token of the new file has its own place; one of the path gets that of the
-    // Include.
+    // An error in the first token of the new file has its own place;
+    // one of the path gets that of the Include.
     if (place_.path != directive.place.path) throw;
     fail(directive.place, std::string("cannot include ") + error.what());
   }

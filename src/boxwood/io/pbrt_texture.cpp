@@ -49,8 +49,8 @@ TextureValue Textures::image_map(const Directive& directive) {
   if (file.empty())
     fail(directive.place,
          "Texture " + in_quotes(directive.strings[0]) + " is an imagemap without a \"filename\"");
-  parameters.ignore(
-      {"trilinear", "filter", "maxanisotropy"});  // how it is sampled, which the renderer decides
+  // How it is sampled is the renderer's to decide.
+  parameters.ignore({"trilinear", "filter", "maxanisotropy"});
 
   Picture picture{parser_.resolve(file), false, directive.place};
   picture.is_linear = !parameters.boolean("gamma", true) || parameters.string("encoding", "sRGB") == "linear";

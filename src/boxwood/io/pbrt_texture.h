@@ -20,8 +20,8 @@ struct TextureValue {
 /// A picture that some texture needs; read only when a material uses it.
 struct Picture {
   std::filesystem::path path;
-  bool is_linear =
-      false;  ///< The file says "linear" in so many words; else the picture's own format decides.
+  /// The file says "linear" in so many words; else the picture's own format decides.
+  bool is_linear = false;
   Place place;
 };
 
@@ -35,8 +35,8 @@ class Textures {
   /// A parameter that may be a color or a texture of colors; `otherwise` when it is absent or unknown.
   TextureValue color(const ParameterList& parameters, std::string_view name, TextureValue otherwise) const;
   Vec3 plain_color(const ParameterList& parameters, std::string_view name, Vec3 otherwise) const;
-  /// A parameter that may be a number or a texture of numbers; a picture counts as `otherwise`, with a
-  /// warning.
+  /// A parameter that may be a number or a texture of numbers;
+  /// a picture counts as `otherwise`, with a warning.
   float number(const ParameterList& parameters, std::string_view name, float otherwise) const;
 
   const std::vector<Picture>& pictures() const { return pictures_; }

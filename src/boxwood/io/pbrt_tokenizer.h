@@ -40,8 +40,8 @@ class Tokenizer {
   Tokenizer(const Tokenizer&) = delete;
   Tokenizer& operator=(const Tokenizer&) = delete;
 
-  /// Throws FileError at a string that does not end on its line, or that holds an escape sequence that means
-  /// nothing.
+  /// Throws FileError at a string that does not end on its line,
+  /// or that holds an escape sequence that means nothing.
   Token next();
 
   const std::string& path() const { return path_; }

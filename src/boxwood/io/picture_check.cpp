@@ -98,8 +98,8 @@ void check_exr(std::string_view bytes, const std::string& name) {
 }
 
 std::string png_essentials(std::string_view bytes, const std::string& name) {
-  constexpr std::size_t kSignature = 8,
-                        kFrame = 12;  // A chunk is framed by its length, its type and its check sum.
+  // A chunk is framed by its length, its type and its check sum.
+  constexpr std::size_t kSignature = 8, kFrame = 12;
   constexpr std::string_view kKept[] = {"IHDR", "PLTE", "IDAT", "tRNS", "gAMA", "IEND"};
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n"))
     fail(name, 0, "is not a picture that can be read: no PNG begins so");

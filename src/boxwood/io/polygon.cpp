@@ -22,8 +22,8 @@ bool is_inside(Point p, Point a, Point b, Point c) {
   return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
 }
 
-// The outline as seen against its Newell normal, that is, counterclockwise; by dropping the normal's largest
-// axis.
+// The outline as seen against its Newell normal, that is, counterclockwise;
+// by dropping the normal's largest axis.
 std::vector<Point> flatten(std::span<const Vec3> outline) {
   double normal[3] = {0, 0, 0};
   for (std::size_t i = 0; i < outline.size(); ++i) {

@@ -15,8 +15,8 @@ class TextScanner {
   /// Both must outlive the scanner; `path` is for messages.
   TextScanner(std::string_view text, const std::string& path) : text_(text), path_(path) {}
 
-  /// The next word of the current line; empty at its end. A backslash at the end of a line joins it with the
-  /// next.
+  /// The next word of the current line; empty at its end.
+  /// A backslash at the end of a line joins it with the next.
   std::string_view word_on_line();
   /// The next word of this line or any after it; empty at the end of the text.
   std::string_view word();
