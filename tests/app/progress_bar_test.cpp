@@ -30,11 +30,13 @@ std::vector<std::string> shown_on(unsigned short columns) {
   dup2(stderr_before, STDERR_FILENO);
   close(stderr_before);
 
-  char bytes[1000];
-  const ssize_t count = read(terminal, bytes, sizeof(bytes));
+  // What was written comes in pieces, and then an error, because nobody is left to write.
   close(program);
+  std::string text;
+  char bytes[1000];
+  for (ssize_t count; (count = read(terminal, bytes, sizeof(bytes))) > 0;)
+    text.append(bytes, static_cast<std::size_t>(count));
   close(terminal);
-  const std::string text(bytes, count > 0 ? static_cast<std::size_t>(count) : 0);
   std::vector<std::string> lines;
   for (std::size_t at = text.find(kStartOfLine); at != std::string::npos;) {
     at += kStartOfLine.size();
