@@ -180,14 +180,14 @@ void Interpreter::add_shape(const Directive& directive) {
   const Attributes& now = state_.now;
   std::optional<ShapeValue> value = make_shape(directive, now.frame, parser_, warnings_);
   if (!value) return;
-  std::optional<Glow> glow = now.glow;
-  if (open_object_ != nullptr && glow) {
+  const bool is_in_object = open_object_ != nullptr;
+  if (is_in_object && now.glow)
     warnings_.once(directive.place,
                    "area lights inside of objects are not supported; the shapes do not glow");
-    glow.reset();
-  }
+  const std::optional<Glow> no_glow;
+  const std::optional<Glow>& glow = is_in_object ? no_glow : now.glow;
   PlacedShape shape{std::move(*value), material_id(now.material, glow), now.frame, directive.place};
-  if (open_object_ != nullptr)
+  if (is_in_object)
     open_object_->shapes.push_back(std::move(shape));
   else
     desc_.add(put_into_scene(shape));
