@@ -12,6 +12,9 @@ mkdir -p "$out"
 for scene in stilllife cornell spheres soup terrain city; do
   "$program" render "$scene" -o "$out/$scene.png" --samples 256
 done
+for mode in path color normal depth occlusion cost; do  # modes.jpg: these six, three in a row
+  "$program" render stilllife -o "$out/mode-$mode.png" --mode "$mode" --size 320x180 --samples 100
+done
 if [ -n "${BOXWOOD_MODELS:-}" ]; then
   "$program" render "$BOXWOOD_MODELS/bunny.obj" -o "$out/bunny.png" --size 480x480 --samples 256
   "$program" render "$BOXWOOD_MODELS/CesiumMilkTruck.glb" -o "$out/truck.png" --size 480x480 --samples 256
