@@ -1,5 +1,6 @@
 #include "interrupt.h"
 
+#include <atomic>
 #include <csignal>
 
 #include <unistd.h>
@@ -8,11 +9,13 @@ namespace boxwood::app {
 namespace {
 
 constexpr int kInterruptedExitCode = 128 + SIGINT;  // as shells report it
-volatile std::sig_atomic_t interrupts = 0;
+
+// Set by a signal handler and read by every thread that renders; lock-free, so a handler may touch it.
+std::atomic<bool> is_asked_to_stop = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void note_interrupt(int) {
-  if (interrupts != 0) _exit(kInterruptedExitCode);
-  interrupts = 1;
+  if (is_asked_to_stop.exchange(true)) _exit(kInterruptedExitCode);
 }
 
 }  // namespace
@@ -22,7 +25,7 @@ void catch_interrupts() {
 }
 
 bool is_interrupted() {
-  return interrupts != 0;
+  return is_asked_to_stop;
 }
 
 }  // namespace boxwood::app
