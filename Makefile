@@ -4,11 +4,11 @@
 
 PROGRAM := build/release/boxwood
 
-.PHONY: help setup build demo test check bench format docs clean
+.PHONY: help setup build demo test check bench microbench format docs clean
 .DEFAULT_GOAL := help
 
 help:    ## This list.
-	@sed -n 's/^\([a-z]*\): .*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
+	@sed -n 's/^\([a-z]*\): .*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 19
 
 setup:   ## Install the Debian packages that are missing; nothing when none are.
 	@tools/setup.sh
@@ -33,7 +33,12 @@ check: setup  ## What a change must pass before it is shared: format, warnings a
 	cmake --preset asan && cmake --build --preset asan && tools/run_tests.py build/asan
 	cmake --preset tsan && cmake --build --preset tsan && tools/run_tests.py build/tsan
 
-bench: setup  ## Measure queries and builders, beside Embree where it is installed.
+# Where the variable BOXWOOD_MODELS names a folder of real models (CONTRIBUTING.md), these come first.
+MODELS := $(if $(BOXWOOD_MODELS),$(addprefix $(BOXWOOD_MODELS)/,bunny.obj dragon.ply kitchen/scene.pbrt))
+bench: build  ## Measure builds and rays beside Embree, on made scenes and on the models in $BOXWOOD_MODELS.
+	$(PROGRAM) bench $(MODELS) soup:1000000 terrain:2048
+
+microbench: setup  ## Measure queries and builders piece by piece.
 	cmake --preset release
 	cmake --build --preset release --target boxwood_bench
 	build/release/bench/boxwood_bench

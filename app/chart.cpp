@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "numbers.h"
+#include "svg.h"
 
 namespace boxwood::app {
 namespace {
@@ -25,19 +26,6 @@ constexpr Look kLooks[] = {{"#000000", 'o'}, {"#CC79A7", 's'}, {"#6F6F6F", 'd', 
 
 const Look& look_of(std::size_t series) {
   return kLooks[series % std::size(kLooks)];
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else
-      out += c;
-  }
-  return out;
 }
 
 std::string marker(const Look& look, double x, double y) {
@@ -175,26 +163,7 @@ void draw_panel(const Panel& panel, double left, std::string& svg) {
 std::string log_log_chart(const std::string& title, const std::string& subtitle,
                           const std::vector<Panel>& panels) {
   const double width = kPanelWidth * double(panels.size()), height = kTop + kFrameHeight + kBottom;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
-      "{1:.0f}\" "
-      "font-family=\"DejaVu Sans, Verdana, Helvetica, Arial, sans-serif\">\n"
-      "<style>\n"
-      ".title{{font-size:22px;font-weight:bold;fill:#222}}\n"
-      ".subtitle{{font-size:14px;fill:#555}}\n"
-      ".panel{{font-size:16px;font-weight:bold;fill:#222}}\n"
-      ".label,.tick{{font-size:13px;fill:#444}}\n"
-      ".name{{font-size:13px;font-weight:bold}}\n"
-      ".note{{font-weight:normal;fill:#555}}\n"
-      ".major{{stroke:#cccccc;stroke-width:1;fill:none}}\n"
-      ".minor{{stroke:#ececec;stroke-width:1;fill:none}}\n"
-      ".curve{{stroke-width:2.2;fill:none;stroke-linejoin:round}}\n"
-      ".tie{{stroke-width:1;stroke-opacity:0.45;fill:none}}\n"
-      "</style>\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
-      "<text class=\"title\" x=\"24\" y=\"38\">{2}</text>\n"
-      "<text class=\"subtitle\" x=\"24\" y=\"62\">{3}</text>\n",
-      width, height, escaped(title), escaped(subtitle));
+  std::string svg = svg_begin(width, height, title, subtitle);
   for (std::size_t p = 0; p < panels.size(); ++p) draw_panel(panels[p], kPanelWidth * double(p) + kLeft, svg);
   return svg + "</svg>\n";
 }

@@ -10,5 +10,6 @@ namespace boxwood::app {
 void add_render(CLI::App& program);
 void add_info(CLI::App& program);
 void add_ladder(CLI::App& program);
+void add_bench(CLI::App& program);
 
 }  // namespace boxwood::app

@@ -62,11 +62,13 @@ int main(int argc, char** argv) {
       "  boxwood render bunny.obj -o bunny.png   a picture of a file\n"
       "  boxwood info bunny.obj                  what is in it, what its tree is like\n"
       "  boxwood ladder                          from brute force to the best tree\n"
+      "  boxwood bench bunny.obj                 how fast it is, beside Embree\n"
       "'boxwood COMMAND --help' tells more.\n"
       "Exit codes: 0 done, 1 failed, 2 wrong usage.");
   boxwood::app::add_render(program);
   boxwood::app::add_info(program);
   boxwood::app::add_ladder(program);
+  boxwood::app::add_bench(program);
 
   if (const std::string name = unknown_command(program, argc, argv); !name.empty())
     return complain("there is no command '" + name + "' (see boxwood --help)", kWrongUsage);

@@ -21,9 +21,11 @@ if(BOXWOOD_BUILD_APP)
   boxwood_require(fmt libfmt-dev)
   boxwood_require(nlohmann_json nlohmann-json3-dev)
 endif()
+if(BOXWOOD_BUILD_APP OR BOXWOOD_BUILD_TESTS)
+  find_package(embree 3 QUIET)     # only a peer to measure against and to compare with; absent is fine
+endif()
 if(BOXWOOD_BUILD_TESTS)
   boxwood_require(GTest libgtest-dev)
   find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter)  # the checks of layers, snippets and outputs
-  find_package(embree 3 QUIET)     # only a peer to measure against and to compare with; absent is fine
-  find_package(benchmark QUIET)    # only for make bench
+  find_package(benchmark QUIET)    # only for make microbench
 endif()

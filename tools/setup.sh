@@ -22,8 +22,8 @@ nlohmann-json3-dev    --json
 libcli11-dev          the command line
 libfmt-dev            text on the terminal
 libgtest-dev          GoogleTest: the tests
-libbenchmark-dev      Google Benchmark: make bench
-libembree-dev         Embree, a peer to compare with in tests and benchmarks
+libbenchmark-dev      Google Benchmark: make microbench
+libembree-dev         Embree, a peer to compare with in tests and in boxwood bench
 LIST
 }
 

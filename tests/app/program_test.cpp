@@ -26,7 +26,7 @@ class Program : public ProgramTest {
 TEST_F(Program, HelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"render", "info", "ladder", "Examples"})
+  for (const char* command : {"render", "info", "ladder", "bench", "Examples"})
     EXPECT_NE(help.out.find(command), std::string::npos);
   const Outcome render_help = run("render --help");
   EXPECT_EQ(render_help.exit_code, 0);
