@@ -143,6 +143,19 @@ TEST(Build, LeavesOfTheHeuristicsAreBounded) {
       }
 }
 
+TEST(Build, BlocksOfPrimitivesAreFilled) {
+  for (const Method method : {Method::binned_sah, Method::sweep_sah})
+    for (const BoxSet& set : {BoxSet{"soup", soup_boxes(30'000)}, BoxSet{"terrain", terrain_boxes(120)}}) {
+      const Bvh one = build(set.boxes, {.method = method});
+      const Bvh four = build(set.boxes, {.method = method, .block_size = 4});
+      EXPECT_EQ(validate(four, set.boxes), "");
+      // Nothing is gained by taking apart what is tested at once.
+      EXPECT_GT(tree_shape(four).mean_leaf_size, 3) << set.name;
+      EXPECT_GT(tree_shape(four).mean_leaf_size, 1.2 * tree_shape(one).mean_leaf_size) << set.name;
+      EXPECT_EQ(tree_shape(four).max_leaf_size, 4u) << set.name;
+    }
+}
+
 TEST_P(EachMethod, EmptyBoxesStandApart) {
   std::vector<Box3> boxes = soup_boxes(1000);
   for (std::size_t i = 500; i < 1000; ++i) boxes[i] = Box3{};
@@ -175,6 +188,8 @@ TEST_P(EachMethod, RefusesWhatIsOutOfRange) {
   o.max_depth = kMaxDepth + 1, expect_named("max_depth is 97", o);
   o = options();
   o.leaf_size = 0, expect_named("leaf_size is 0", o);
+  o = options();
+  o.block_size = 0, expect_named("block_size is 0", o);
   o = options();
   o.bins = 1, expect_named("bins is 1", o);
   o.bins = 65, expect_named("bins is 65", o);

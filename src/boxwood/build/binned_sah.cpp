@@ -1,215 +1,245 @@
 #include "boxwood/build/binned_sah.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "boxwood/build/morton_order.h"
 
 namespace boxwood {
 namespace {
 
-/// Which bin a half center falls into, on each axis:
-/// monotonic in the center, so that bins are slabs in order.
-class Binning {
- public:
-  Binning(const Reach& half_centers, int bins) : bins_(bins) {
-    float scale[3];
-    for (int k = 0; k < 3; ++k) {
-      // Where the scale overflows, or there is nothing to tell apart, everything falls into bin 0.
-      const float extent = half_centers.upper.v[k] - half_centers.lower(k);
-      scale[k] = float(bins) / extent;
-      is_useful_[k] = extent > 0 && scale[k] < 0x1p120f;
-      if (!is_useful_[k]) scale[k] = 0;
-    }
-    lower_ = {Lanes::Register{half_centers.lower(0), half_centers.lower(1), half_centers.lower(2), 0}};
-    scale_ = {Lanes::Register{scale[0], scale[1], scale[2], 0}};
-  }
-  bool is_useful(int axis) const { return is_useful_[axis]; }
-  int bins() const { return bins_; }
-
-  int bin(const Item& item, int axis) const {
-    return std::min(bins_ - 1, int((item.half_center(axis) - lower_.v[axis]) * scale_.v[axis]));
-  }
-  /// The same for all axes at once.
-  Lanes places(const Reach& reach) const { return (half_center(reach) - lower_) * scale_; }
-  int bin(Lanes places, int axis) const { return std::min(bins_ - 1, int(places.v[axis])); }
-
- private:
-  int bins_;
-  bool is_useful_[3];
-  Lanes lower_, scale_;
-};
-
-/// What fell into the bins.
-struct Histogram {
-  Reach reach[3][BinnedSahSplitter::kMaxBins];
-  std::uint32_t count[3][BinnedSahSplitter::kMaxBins];
-
-  int bins;
-
-  explicit Histogram(int bins) : bins(bins) {
-    for (int k = 0; k < 3; ++k) {
-      std::fill_n(reach[k], bins, Reach{});
-      std::fill_n(count[k], bins, 0);
-    }
-  }
-  void extend(const Histogram& other) {
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < bins; ++i) {
-        reach[k][i].extend(other.reach[k][i]);
-        count[k][i] += other.count[k][i];
-      }
-  }
-  void add(const Binning& binning, std::span<const Item> items) {
-    for (const Item& item : items) {
-      const Reach box = item.reach();
-      const Lanes places = binning.places(box);
-      for (int k = 0; k < 3; ++k) {
-        const int bin = binning.bin(places, k);
-        reach[k][bin].extend(box);
-        ++count[k][bin];
-      }
-    }
-  }
-};
-
-/// Prices every plane between two bins that leaves something on both sides;
-/// `index` is the first bin on the right.
-Split find_best_split(const Histogram& histogram, const Binning& binning, std::uint32_t total) {
-  Split best;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!binning.is_useful(axis)) continue;
-    const Reach* reach = histogram.reach[axis];
-    const std::uint32_t* count = histogram.count[axis];
-
-    // From the right: the area of everything from each bin on.
-    double right_area[BinnedSahSplitter::kMaxBins];
-    Reach right;
-    for (int i = binning.bins() - 1; i > 0; --i) {
-      right.extend(reach[i]);
-      right_area[i] = right.half_area();
-    }
-
-    // From the left: the other side, and the price of the plane in between.
-    Reach left;
-    std::uint32_t left_count = 0;
-    for (int i = 1; i < binning.bins(); ++i) {
-      left.extend(reach[i - 1]);
-      left_count += count[i - 1];
-      const std::uint32_t right_count = total - left_count;
-      if (count[i - 1] == 0 || right_count == 0) continue;
-      const double cost = SahCost::children(left.half_area(), left_count, right_area[i], right_count);
-      const Split split{cost, difference(left_count, right_count), axis, static_cast<std::uint32_t>(i)};
-      if (split.is_better_than(best)) best = split;
-    }
-  }
-  return best;
-}
-
-/// Ranges from this size on are worked on by blocks of
-/// kBlock items at the same time; neither shows in the tree.
+/// Ranges from this size on are worked on by blocks of kBlock items at the same time; neither shows in the
+/// tree.
 constexpr std::size_t kParallelSize = 1 << 16, kBlock = 1 << 14;
 
-/// Adds all items to `all` with `add(T&, items)`; `all` is empty before.
-template <class T, class Add>
-void reduce(T& all, std::span<const Item> items, Executor& executor, const Add& add) {
+/// Up to so many primitives are split in the best of all ways; of so few the centers' range is looked up
+/// again, because a range that is only guessed leaves too many of a few bins empty.
+constexpr std::uint32_t kFew = 4, kLookAgain = 64;
+
+/// Larger ranges are worked on as groups of primitives.
+constexpr std::uint32_t kTakeApart = 256;
+
+/// Adds all items to `all` with `add(T&, items)`; `all` is empty before. `merge(T&, const T&)` adds two.
+template <class T, class Add, class Merge>
+void reduce(T& all, std::span<const Item> items, Executor& executor, const Add& add, const Merge& merge) {
   if (items.size() < kParallelSize) return add(all, items);
 
   std::vector<T> found((items.size() + kBlock - 1) / kBlock, all);
   parallel_for(executor, 0, found.size(), 1, [&](std::size_t block) {
     add(found[block], items.subspan(block * kBlock, std::min(kBlock, items.size() - block * kBlock)));
   });
-  for (const T& part : found) all.extend(part);
+  for (const T& part : found) merge(all, part);
 }
 
-/// Brings the items that go left to the front,
-/// by way of `scratch` where the range is large; returns how many they are.
+/// Parts many: all go to `room`, first those that go left, then the others; both keep their order. Returns
+/// how many go left.
 template <class GoesLeft>
-std::uint32_t part(std::span<Item> items, std::span<Item> scratch, Executor& executor,
-                   const GoesLeft& goes_left) {
-  if (items.size() < kParallelSize)
-    return static_cast<std::uint32_t>(std::partition(items.begin(), items.end(), goes_left) - items.begin());
-
-  // Count, so that each block knows where its items go,
-  // left ones from the front and right ones from there on.
+std::size_t part_many(std::span<const Item> items, Item* room, Executor& executor,
+                      const GoesLeft& goes_left) {
+  // Count, so that each block knows where its items go.
   const std::size_t blocks = (items.size() + kBlock - 1) / kBlock;
   const auto block_end = [&](std::size_t block) { return std::min(items.size(), (block + 1) * kBlock); };
   std::vector<std::size_t> left_before(blocks + 1, 0);
   parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < block_end(block); ++i)
-      left_before[block + 1] += goes_left(items[i]);
+    std::size_t count = 0;
+    for (std::size_t i = block * kBlock; i < block_end(block); ++i) count += goes_left(items[i]);
+    left_before[block + 1] = count;
   });
   for (std::size_t block = 0; block < blocks; ++block) left_before[block + 1] += left_before[block];
 
   parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    std::size_t left = left_before[block], right = left_before[blocks] + block * kBlock - left;
+    std::size_t next[2] = {left_before[blocks] + block * kBlock - left_before[block], left_before[block]};
     for (std::size_t i = block * kBlock; i < block_end(block); ++i)
-      scratch[goes_left(items[i]) ? left++ : right++] = items[i];
+      room[next[goes_left(items[i])]++] = items[i];
   });
-  parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    std::copy(scratch.begin() + block * kBlock, scratch.begin() + block_end(block),
-              items.begin() + block * kBlock);
-  });
-  return static_cast<std::uint32_t>(left_before[blocks]);
+  return left_before[blocks];
+}
+
+int bins_for(std::uint32_t count, int most) {
+  return std::min(most, count < 16 ? 4 : count < 64 ? 8 : most);
 }
 
 }  // namespace
 
-BinnedSahSplitter::BinnedSahSplitter(std::vector<Item>& items, const BuildOptions& options,
-                                     Executor& executor)
+BinnedSahSplitter::BinnedSahSplitter(std::span<Item> items, const BuildOptions& options, Executor& executor)
     : items_(items),
-      scratch_(items.size() < kParallelSize ? 0 : items.size()),
+      room_(items.size()),
       leaf_size_(static_cast<std::uint32_t>(options.leaf_size)),
       max_bins_(options.bins),
-      cost_{options.traversal_cost},
-      executor_(executor) {}
-
-Step BinnedSahSplitter::step(Range range, Plan plan) {
-  const std::span<Item> items = items_.subspan(range.begin, range.size());
-  Extents around;
-  reduce(around, items, executor_, [](Extents& all, std::span<const Item> some) {
-    for (const Item& item : some) all.extend(item);
-  });
-  const Step leaf{around.box.box(), range.begin};
-  if (plan == Plan::leaf) return leaf;
-
-  // A small range stays together unless taking it apart pays.
-  const double area = around.box.half_area();
-  const auto must_or_should_split = [&](double children_cost) {
-    return range.size() > leaf_size_ || cost_.split(area, children_cost) < SahCost::leaf(area, range.size());
-  };
-
-  if (plan == Plan::choose && range.size() > 2) {
-    // Fill the bins. More of them than primitives cost time and tell nothing.
-    const int bins = static_cast<int>(std::min<std::uint32_t>(max_bins_, std::max(4u, range.size())));
-    const Binning binning(around.half_centers, bins);
-    Histogram histogram(bins);
-    reduce(histogram, items, executor_,
-           [&](Histogram& all, std::span<const Item> some) { all.add(binning, some); });
-    const Split best = find_best_split(histogram, binning, range.size());
-    if (best.exists()) {
-      if (!must_or_should_split(best.children_cost)) return leaf;
-      const std::span<Item> scratch =
-          scratch_.empty() ? items : std::span(scratch_).subspan(range.begin, range.size());
-      const std::uint32_t left_count = part(items, scratch, executor_, [&](const Item& item) {
-        return binning.bin(item, best.axis) < static_cast<int>(best.index);
-      });
-      return {leaf.box, range.begin + left_count};
-    }
+      cost_{options.traversal_cost, static_cast<std::uint32_t>(options.block_size)},
+      executor_(executor) {
+  Bounds bounds;
+  reduce(bounds, items_, executor_, kernels_.bound,
+         [](Bounds& all, const Bounds& some) { all.extend(some); });
+  if (items.size() <= kTakeApart) {
+    root_ = {items_, room_.data(), false, bounds.box, bounds.centers};
+  } else {
+    order_ = in_morton_order(items, bounds.centers, executor_);
+    groups_ = make_groups(order_, executor_);
+    group_room_ = RawArray<Group>(groups_.size());
+    root_ = {{groups_.data(), groups_.size()}, group_room_.data(), true, bounds.box, bounds.centers};
   }
-
-  // Halve where levels are short, where all centers fall together,
-  // and two primitives, which have no other split.
-  const double halves_cost =
-      range.size() == 2 ? items[0].reach().half_area() + items[1].reach().half_area() : area * range.size();
-  if (plan == Plan::choose && !must_or_should_split(halves_cost)) return leaf;
-  const std::uint32_t half = range.size() / 2;
-  std::nth_element(items.begin(), items.begin() + half, items.end(),
-                   ByCenter{longest_axis(around.half_centers)});
-  return {leaf.box, range.begin + half};
 }
 
-void BinnedSahSplitter::write_leaf(Range range, std::span<PrimId> out) const {
-  for (std::uint32_t i = 0; i < range.size(); ++i) out[i] = items_[range.begin + i].prim_id;
-  std::sort(out.begin(), out.end());
+Step<BinnedSahSplitter::Share> BinnedSahSplitter::step(Range range, Plan plan, const Share& share) {
+  if (share.are_groups && (plan != Plan::choose || range.size() <= kTakeApart))
+    return step(range, plan, take_apart(range, share));
+  if (plan == Plan::leaf) return {share.box.box(), range.begin, share, share};
+  if (plan == Plan::halve) return halve(range, share);
+  if (range.size() <= leaf_size_ && range.size() <= cost_.block)
+    return {share.box.box(), range.begin, share, share};
+  return range.size() <= kFew ? split_few(range, share) : split_at_plane(range, share);
+}
+
+BinnedSahSplitter::Share BinnedSahSplitter::take_apart(Range range, const Share& share) const {
+  Share single{items_.subspan(range.begin, range.size()), room_.data() + range.begin, false, share.box,
+               share.centers};
+  Item* out = single.items.data();
+  for (const Group& group : share.items) {
+    const Item* first = order_.items.data() + first_of(group);
+    out = std::copy(first, first + size_of(group), out);
+  }
+  return single;
+}
+
+Step<BinnedSahSplitter::Share> BinnedSahSplitter::split_at_plane(Range range, const Share& share) {
+  const std::uint32_t count = range.size();
+  const std::span<Item> items = share.items;
+
+  // Fill the bins.
+  Reach centers = share.centers;
+  if (count <= kLookAgain) {
+    Bounds bounds;
+    kernels_.bound(bounds, items);
+    centers = bounds.centers;
+  }
+  const Binning binning(centers, bins_for(count, max_bins_));
+  Histogram histogram(binning.bins);
+  reduce(
+      histogram, items, executor_,
+      [&](Histogram& all, std::span<const Item> some) {
+        kernels_.fill(all, binning, some, share.are_groups);
+      },
+      kernels_.merge);
+  const Cut cut = kernels_.best_cut(histogram, share.box, count, cost_);
+
+  // Nothing to gain: any two halves.
+  const float area = Scale(share.box).area(share.box);
+  const bool is_found = cut.axis >= 0 && cut.children_cost < cost_.leaf(area, count);
+  if (!is_found && count > leaf_size_)
+    return halve(range, share.are_groups ? take_apart(range, share) : share);
+  if (!is_found || !should_split(count, area, cut.children_cost))
+    return {share.box.box(), range.begin, share, share};
+
+  // Part the primitives. What is known of the centers on each side: they are on that side of the plane, and
+  // in that side's box.
+  Step<Share> step{share.box.box(), range.begin + cut.left_count, share, share};
+  if (items.size() < kParallelSize) {
+    const std::size_t left = kernels_.part(items, share.room, binning, cut.axis, cut.bin);
+    const std::size_t right = items.size() - left;
+    step.left.items = items.first(left);
+    step.left.room = share.room + right;
+    step.right.items = {share.room, right};
+    step.right.room = items.data() + left;
+  } else {
+    const std::size_t left = part_many(items, share.room, executor_, [&](const Item& item) {
+      return is_before(item, binning, cut.axis, cut.bin);
+    });
+    step.left.items = {share.room, left};
+    step.left.room = items.data();
+    step.right.items = {share.room + left, items.size() - left};
+    step.right.room = items.data() + left;
+  }
+  const auto narrow = [&](Share& half, const Reach& box) {
+    half.box = box;
+    half.centers.minus_lower = min(centers.minus_lower, box.minus_lower + box.minus_lower);
+    half.centers.upper = min(centers.upper, box.upper + box.upper);
+  };
+  narrow(step.left, cut.left);
+  narrow(step.right, cut.right);
+  const float border = binning.border(cut.axis, cut.bin);
+  step.left.centers.upper.v[cut.axis] = std::min(step.left.centers.upper.v[cut.axis], border);
+  step.right.centers.minus_lower.v[cut.axis] = std::min(step.right.centers.minus_lower.v[cut.axis], -border);
+  return step;
+}
+
+/// Prices every way to deal two to four primitives to two sides.
+Step<BinnedSahSplitter::Share> BinnedSahSplitter::split_few(Range range, const Share& share) const {
+  const std::uint32_t count = range.size(), all = (1u << count) - 1;
+  const Scale scale(share.box);
+  constexpr std::uint8_t kMembers[1 << (kFew - 1)] = {0, 1, 1, 2, 1, 2, 2, 3};
+
+  // The union of each set of primitives, from one with a member less.
+  Reach box[1 << kFew];
+  float area[1 << kFew];
+  for (std::uint32_t set = 1; set < all; ++set) {
+    box[set] = box[set & (set - 1)];
+    box[set].extend(share.items[std::countr_zero(set)].reach());
+    area[set] = scale.area(box[set]);
+  }
+
+  // Sets without the last primitive are one side of each way to split. Pairs first: equal prices go to the
+  // more even split.
+  std::uint32_t best = 0;
+  float least = kInfinity;
+  for (const std::uint32_t set : {3u, 5u, 6u, 1u, 2u, 4u, 7u}) {
+    if (set >= (all + 1) / 2) continue;
+    const auto price =
+        static_cast<float>(cost_.children(area[set], kMembers[set], area[all ^ set], count - kMembers[set]));
+    if (price < least) {
+      least = price;
+      best = set;
+    }
+  }
+  if (best == 0) return halve(range, share);
+  if (!should_split(count, scale.area(share.box), least)) return {share.box.box(), range.begin, share, share};
+
+  const std::uint32_t left_count = kMembers[best];
+  Item sides[kFew];
+  std::uint32_t next[2] = {left_count, 0};
+  for (std::uint32_t i = 0; i < count; ++i) sides[next[best >> i & 1]++] = share.items[i];
+  std::copy(sides, sides + count, share.items.begin());
+  Step<Share> step{share.box.box(), range.begin + left_count, share, share};
+  step.left.box = box[best];
+  step.left.items = share.items.first(left_count);
+  step.right.items = share.items.subspan(left_count);
+  step.right.box = box[all ^ best];
+  return step;
+}
+
+/// Where levels are short, and where all centers fall together.
+Step<BinnedSahSplitter::Share> BinnedSahSplitter::halve(Range range, const Share& share) const {
+  const std::uint32_t half = range.size() / 2;
+  const std::span<Item> items = share.items;
+  Bounds bounds;
+  kernels_.bound(bounds, items);
+  const int axis = longest_axis(bounds.centers);
+  if (bounds.centers.upper.v[axis] > bounds.centers.lower(axis))
+    std::nth_element(items.begin(), items.begin() + half, items.end(), ByCenter{axis});
+
+  Step<Share> step{share.box.box(), range.begin + half, share, share};
+  step.left.items = items.first(half);
+  step.right.items = items.subspan(half);
+  step.right.room += half;
+  const auto look = [&](Share& side, std::span<const Item> some) {
+    Bounds around;
+    kernels_.bound(around, some);
+    side.box = around.box;
+    side.centers = around.centers;
+  };
+  look(step.left, items.first(half));
+  look(step.right, items.subspan(half));
+  return step;
+}
+
+void BinnedSahSplitter::write_leaf(Range, const Share& share, std::span<PrimId> out) const {
+  std::size_t next = 0;
+  for (const Item& item : share.items) {
+    if (!share.are_groups) {
+      out[next++] = item.prim_id;
+      continue;
+    }
+    for (std::uint32_t i = 0; i < size_of(item); ++i) out[next++] = order_.items[first_of(item) + i].prim_id;
+  }
 }
 
 }  // namespace boxwood

@@ -21,7 +21,8 @@ void require_range(const char* name, int value, int lowest, int highest) {
 void check(const BuildOptions& options) {
   require_range("max_depth", options.max_depth, 0, kMaxDepth);
   require_range("leaf_size", options.leaf_size, 1, std::numeric_limits<int>::max());
-  require_range("bins", options.bins, 2, BinnedSahSplitter::kMaxBins);
+  require_range("block_size", options.block_size, 1, std::numeric_limits<int>::max());
+  require_range("bins", options.bins, 2, kMaxBins);
   if (!(options.traversal_cost >= 0 && std::isfinite(options.traversal_cost)))
     throw std::invalid_argument("build: traversal_cost is " + std::to_string(options.traversal_cost) +
                                 ", expected a finite number that is not negative");
@@ -37,7 +38,8 @@ Bvh build(std::span<const Box3> boxes, const BuildOptions& options) {
   Executor& executor = options.executor != nullptr ? *options.executor : default_executor();
   Meter meter(options.progress, boxes.size());
   meter.advance(0);
-  Items items = collect_items(boxes, executor);
+  const Items items = collect_items(boxes, executor);
+  const std::span<Item> full{items.full.data(), items.full.size()};
 
   // Grow the tree: all methods share the driver and differ in how they split a node.
   const auto grow = [&](auto splitter, bool may_halve) {
@@ -46,11 +48,11 @@ Bvh build(std::span<const Box3> boxes, const BuildOptions& options) {
   };
   switch (options.method) {
     case Method::longest_axis:
-      return grow(LongestAxisSplitter(items.full, options), false);
+      return grow(LongestAxisSplitter(full, options), false);
     case Method::binned_sah:
-      return grow(BinnedSahSplitter(items.full, options, executor), true);
+      return grow(BinnedSahSplitter(full, options, executor), true);
     case Method::sweep_sah:
-      return grow(SweepSahSplitter(items.full, options, executor), true);
+      return grow(SweepSahSplitter(full, options, executor), true);
   }
   throw std::invalid_argument("build: method is " + std::to_string(static_cast<int>(options.method)) +
                               ", expected longest_axis, binned_sah or sweep_sah");

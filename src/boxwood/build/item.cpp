@@ -23,7 +23,7 @@ constexpr std::size_t kGrain = 1 << 14;
 
 Items collect_items(std::span<const Box3> boxes, Executor& executor) {
   Items items;
-  items.full.resize(boxes.size());
+  items.full = RawArray<Item>(boxes.size());
   std::atomic<std::size_t> first_bad{boxes.size()};
   std::atomic<bool> any_empty{false};
 
@@ -45,7 +45,9 @@ Items collect_items(std::span<const Box3> boxes, Executor& executor) {
   if (any_empty) {
     for (std::size_t i = 0; i < boxes.size(); ++i)
       if (boxes[i].is_empty()) items.empty_boxes.push_back(PrimId(i));
-    std::erase_if(items.full, [&](const Item& item) { return boxes[item.prim_id.value].is_empty(); });
+    const auto end = std::remove_if(items.full.begin(), items.full.end(),
+                                    [&](const Item& item) { return boxes[item.prim_id.value].is_empty(); });
+    items.full.shrink(static_cast<std::size_t>(end - items.full.begin()));
   }
   return items;
 }

@@ -6,58 +6,18 @@
 // why no tree depends on how its work was spread over threads.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <span>
 #include <vector>
 
+#include "boxwood/build/lanes.h"
+#include "boxwood/build/raw_array.h"
 #include "boxwood/core/box.h"
 #include "boxwood/core/id.h"
 #include "boxwood/core/parallel.h"
 
 namespace boxwood {
-
-/// Four floats that are worked on together; the fourth is there for the alignment and stays 0 or -inf. With
-/// gcc and clang they are one vector register, elsewhere a compiler has to find that out by itself.
-struct Lanes {
-#if defined(__GNUC__)
-  using Register = float __attribute__((vector_size(16)));
-  using Bits = std::int32_t __attribute__((vector_size(16)));
-  Register v;
-
-  friend Lanes max(Lanes a, Lanes b) {
-    return {a.v > b.v ? a.v : b.v};
-  }
-  friend Lanes operator-(Lanes a, Lanes b) {
-    return {a.v - b.v};
-  }
-  friend Lanes operator*(Lanes a, Lanes b) {
-    return {a.v * b.v};
-  }
-  Lanes with_fourth_zero() const {
-    return {std::bit_cast<Register>(std::bit_cast<Bits>(v) & Bits{-1, -1, -1, 0})};
-  }
-#else
-  struct alignas(16) Register {
-    float f[4];
-    float operator[](int k) const { return f[k]; }
-  };
-  Register v;
-
-  template <class Op>
-  static Lanes each(Op op) {
-    return {Register{op(0), op(1), op(2), op(3)}};
-  }
-  // clang-format off
-  friend Lanes max(Lanes a, Lanes b) { return each([&](int k) { return a.v[k] > b.v[k] ? a.v[k] : b.v[k]; }); }
-  friend Lanes operator-(Lanes a, Lanes b) { return each([&](int k) { return a.v[k] - b.v[k]; }); }
-  friend Lanes operator*(Lanes a, Lanes b) { return each([&](int k) { return a.v[k] * b.v[k]; }); }
-  Lanes with_fourth_zero() const { return each([&](int k) { return k < 3 ? v[k] : 0.0f; }); }
-  // clang-format on
-#endif
-  static Lanes all(float f) {
-    return {Register{f, f, f, f}};
-  }
-};
 
 /// A box as (-lower, upper). Default: empty.
 struct Reach {
@@ -96,16 +56,26 @@ struct Item {
         prim_id(id),
         upper{box.upper.x + 0.0f, box.upper.y + 0.0f, box.upper.z + 0.0f} {}
 
+  Item(const Reach& reach, PrimId id, float rest) {
+    *this = std::bit_cast<Item>(reach);
+    prim_id = id;
+    unused = rest;
+  }
+
   Reach reach() const {
     // The number must not get into arithmetic:
     // as a float it is denormal, and each operation on it costs 150 cycles.
     const Reach with_number = std::bit_cast<Reach>(*this);
-    return {with_number.minus_lower.with_fourth_zero(), with_number.upper};
+    return {with_number.minus_lower.with_fourth_zero(), with_number.upper.with_fourth_zero()};
   }
   /// *Half* of the center. Builders only compare centers, and the difference of two halves is finite for all
   /// boxes.
   float half_center(int axis) const { return 0.25f * upper[axis] - 0.25f * minus_lower[axis]; }
 };
+/// Twice the center; infinite where the box is at the end of the floats.
+inline Lanes twice_center(const Reach& reach) {
+  return reach.upper - reach.minus_lower;
+}
 inline Lanes half_center(const Reach& reach) {
   return Lanes::all(0.25f) * reach.upper - Lanes::all(0.25f) * reach.minus_lower;
 }
@@ -122,7 +92,7 @@ struct ByCenter {
 
 /// What there is to build over.
 struct Items {
-  std::vector<Item> full;           ///< Primitives with a box, in the order of their numbers.
+  RawArray<Item> full;              ///< Primitives with a box, in the order of their numbers.
   std::vector<PrimId> empty_boxes;  ///< Primitives that no box test will ever find.
 };
 
@@ -142,6 +112,29 @@ struct Extents {
     half_centers.extend(other.half_centers);
   }
 };
+/// Areas of boxes inside one box, in floats: relative to the square of its longest side, so that they fit in
+/// scenes of any size. A box without area counts by the length of its sides, a very little.
+class Scale {
+ public:
+  explicit Scale(const Reach& box) {
+    const Lanes extent = box.upper + box.minus_lower;
+    const float longest = std::max(extent.v[0], std::max(extent.v[1], extent.v[2]));
+    factor_ = Lanes::all(longest > 0x1p-120f ? 1 / longest : 0x1p120f);
+  }
+  /// What sums up to the half area: the areas of three sides. (inf, inf, inf) for an empty box.
+  Lanes side_areas(const Reach& reach) const {
+    const Lanes extent = (reach.upper + reach.minus_lower) * factor_;
+    return extent * (extent.turned() + Lanes::all(0x1p-20f));
+  }
+  float area(const Reach& reach) const {
+    const Lanes sides = side_areas(reach);
+    return sides.v[0] + sides.v[1] + sides.v[2];
+  }
+
+ private:
+  Lanes factor_;
+};
+
 /// The axis along which `reach` is longest; halves are compared, so that nothing overflows.
 inline int longest_axis(const Reach& reach) {
   const auto half_extent = [&](int k) { return 0.5f * reach.upper.v[k] + 0.5f * reach.minus_lower.v[k]; };

@@ -13,9 +13,11 @@ namespace boxwood {
 /// Cost: a sort of the range for each node, so n log^2 n in all.
 class LongestAxisSplitter {
  public:
-  LongestAxisSplitter(std::vector<Item>& items, const BuildOptions& options);
-  Step step(Range range, Plan plan);
-  void write_leaf(Range range, std::span<PrimId> out) const;
+  LongestAxisSplitter(std::span<Item> items, const BuildOptions& options);
+  using Share = NoShare;
+  NoShare root() const { return {}; }
+  Step<NoShare> step(Range range, Plan plan, NoShare);
+  void write_leaf(Range range, NoShare, std::span<PrimId> out) const;
 
  private:
   std::span<Item> items_;

@@ -18,6 +18,7 @@ struct BuildOptions {
   int max_depth = 64;  ///< No node deeper than this; 0 to kMaxDepth. A node there is a leaf of any size.
   int leaf_size = 4;   ///< At least 1. A node of more primitives is split, except at max_depth (longest_axis:
                        ///< and where its rule finds no split); of as many or fewer, it may become a leaf.
+  int block_size = 1;  ///< SAH: so many shapes are tested at once, at the cost of one; at least 1.
   int bins = 16;       ///< binned_sah: bins on each axis; 2 to 64.
   float traversal_cost = 1.0f;  ///< SAH: a step over two boxes costs this many shape tests.
   /// Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.

@@ -22,10 +22,10 @@ void for_each_axis(std::uint32_t size, Executor& executor, const Body& body) {
 
 }  // namespace
 
-SweepSahSplitter::SweepSahSplitter(std::vector<Item>& items, const BuildOptions& options, Executor& executor)
+SweepSahSplitter::SweepSahSplitter(std::span<Item> items, const BuildOptions& options, Executor& executor)
     : items_(items),
       leaf_size_(static_cast<std::uint32_t>(options.leaf_size)),
-      cost_{options.traversal_cost},
+      cost_{options.traversal_cost, static_cast<std::uint32_t>(options.block_size)},
       executor_(executor),
       goes_left_(items.size()) {
   // Sort once on each axis. Items come in the order of their numbers and the sort is stable, so equal centers
@@ -42,10 +42,10 @@ SweepSahSplitter::SweepSahSplitter(std::vector<Item>& items, const BuildOptions&
   }
 }
 
-Step SweepSahSplitter::step(Range range, Plan plan) {
+Step<NoShare> SweepSahSplitter::step(Range range, Plan plan, NoShare) {
   Extents around;
   for (std::uint32_t i = range.begin; i < range.end; ++i) around.extend(items_[order_[0][i]]);
-  const Step leaf{around.box.box(), range.begin};
+  const Step<NoShare> leaf{around.box.box(), range.begin, {}, {}};
   if (plan == Plan::leaf) return leaf;
 
   int axis = longest_axis(around.half_centers);
@@ -60,13 +60,13 @@ Step SweepSahSplitter::step(Range range, Plan plan) {
     // A small range stays together unless taking it apart pays.
     const double area = around.box.half_area();
     if (range.size() <= leaf_size_ &&
-        !(cost_.split(area, best.children_cost) < SahCost::leaf(area, range.size())))
+        !(cost_.split(area, best.children_cost) < cost_.leaf(area, range.size())))
       return leaf;
     axis = best.axis;
     middle = best.index;
   }
   part(range, axis, middle);
-  return {leaf.box, middle};
+  return {leaf.box, middle, {}, {}};
 }
 
 /// Prices every split of the order along `axis`; `index` is the first position on the right.
@@ -87,7 +87,7 @@ Split SweepSahSplitter::find_best_split(Range range, int axis) {
   for (std::uint32_t i = range.begin + 1; i < range.end; ++i) {
     left.extend(items_[order[i - 1]].reach());
     const std::uint32_t left_count = i - range.begin, right_count = range.end - i;
-    const double cost = SahCost::children(left.half_area(), left_count, right_area[i], right_count);
+    const double cost = cost_.children(left.half_area(), left_count, right_area[i], right_count);
     const Split split{cost, difference(left_count, right_count), axis, i};
     if (split.is_better_than(best)) best = split;
   }
@@ -115,7 +115,7 @@ void SweepSahSplitter::part(Range range, int axis, std::uint32_t middle) {
   });
 }
 
-void SweepSahSplitter::write_leaf(Range range, std::span<PrimId> out) const {
+void SweepSahSplitter::write_leaf(Range range, NoShare, std::span<PrimId> out) const {
   for (std::uint32_t i = 0; i < range.size(); ++i) out[i] = items_[order_[0][range.begin + i]].prim_id;
   std::sort(out.begin(), out.end());
 }

@@ -18,9 +18,11 @@ namespace boxwood {
 /// order can be split anywhere.
 class SweepSahSplitter {
  public:
-  SweepSahSplitter(std::vector<Item>& items, const BuildOptions& options, Executor& executor);
-  Step step(Range range, Plan plan);
-  void write_leaf(Range range, std::span<PrimId> out) const;
+  SweepSahSplitter(std::span<Item> items, const BuildOptions& options, Executor& executor);
+  using Share = NoShare;
+  NoShare root() const { return {}; }
+  Step<NoShare> step(Range range, Plan plan, NoShare);
+  void write_leaf(Range range, NoShare, std::span<PrimId> out) const;
 
  private:
   Split find_best_split(Range range, int axis);

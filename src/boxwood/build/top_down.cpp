@@ -1,38 +1,32 @@
 #include "boxwood/build/top_down.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace boxwood {
 
-std::vector<BvhNode> squeeze(std::span<const BvhNode> sparse, Executor& executor) {
-  constexpr std::size_t kBlock = 1 << 15;
-  const std::size_t blocks = (sparse.size() + kBlock - 1) / kBlock;
-  const auto is_used = [](const BvhNode& node) { return node.count > 0 || node.first_index > 0; };
-  const auto block_end = [&](std::size_t block) { return std::min(sparse.size(), (block + 1) * kBlock); };
+std::vector<BvhNode> squeeze(std::span<const BvhNode> sparse, std::vector<NodeRun> runs, Executor& executor) {
+  // Runs were noted as they were made: bring them into the order of their places, and count what lies before.
+  std::sort(runs.begin(), runs.end(), [](NodeRun a, NodeRun b) { return a.begin < b.begin; });
+  std::vector<std::uint32_t> moved_to(runs.size() + 1, 0);
+  for (std::size_t i = 0; i < runs.size(); ++i) moved_to[i + 1] = moved_to[i] + runs[i].count;
 
-  // Count the nodes of each block, then those before each block.
-  std::vector<std::uint32_t> before(blocks + 1, 0);
-  parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < block_end(block); ++i) before[block + 1] += is_used(sparse[i]);
-  });
-  for (std::size_t block = 0; block < blocks; ++block) before[block + 1] += before[block];
-
-  // Number the nodes that stay.
-  std::vector<std::uint32_t> new_index(sparse.size());
-  parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    std::uint32_t next = before[block];
-    for (std::size_t i = block * kBlock; i < block_end(block); ++i) {
-      new_index[i] = next;
-      next += is_used(sparse[i]);
-    }
-  });
-
-  // Move them, and point parents to where their children went.
-  std::vector<BvhNode> dense(before[blocks]);
-  parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < block_end(block); ++i) {
-      if (!is_used(sparse[i])) continue;
-      BvhNode node = sparse[i];
-      if (!node.is_leaf()) node.first_index = new_index[node.first_index];
-      dense[new_index[i]] = node;
+  std::vector<BvhNode> dense(moved_to.back());
+  parallel_for(executor, 0, runs.size(), 1, [&](std::size_t i) {
+    const NodeRun run = runs[i];
+    for (std::uint32_t k = 0; k < run.count; ++k) {
+      BvhNode node = sparse[run.begin + k];
+      if (!node.is_leaf()) {
+        // Children lie in the same run, or begin one.
+        std::size_t of = i;
+        if (node.first_index - run.begin >= run.count)
+          of = static_cast<std::size_t>(
+              std::lower_bound(runs.begin(), runs.end(), node.first_index,
+                               [](NodeRun r, std::uint32_t begin) { return r.begin < begin; }) -
+              runs.begin());
+        node.first_index = moved_to[of] + (node.first_index - runs[of].begin);
+      }
+      dense[moved_to[i] + k] = node;
     }
   });
   return dense;

@@ -3,11 +3,10 @@
 // All top-down builders do the same: look at a range of primitives, make it a leaf or split it in two, go on
 // with both halves. They differ in one decision, which a Splitter makes; the rest is here, once:
 //
-//  - Large halves are two tasks. Each subtree owns a part of one node array
-//    that is large enough for its worst case (n primitives need at most
-//    2n - 2 nodes below their root), so nobody waits and nobody's work moves
-//    anybody else's. The gaps are squeezed out at the end. The result is in
-//    depth-first order whatever ran when.
+//  - Large halves are two tasks. Each subtree owns a part of one node array that is large enough for its
+//    worst case (n primitives need at most 2n - 2 nodes below their root), so nobody waits and nobody's work
+//    moves anybody else's. A small subtree fills its part from the front, and where the parts are not full
+//    they are moved together at the end. The result is in depth-first order whatever ran when.
 //  - Depth. ceil(log2(n / leaf_size)) halvings always suffice; when only that
 //    many levels are left, the driver asks for halvings, so a leaf is larger
 //    than leaf_size only where max_depth leaves no choice.
@@ -16,11 +15,13 @@
 
 #include <bit>
 #include <concepts>
+#include <mutex>
 #include <span>
 
 #include "boxwood/build/item.h"
 #include "boxwood/build/meter.h"
 #include "boxwood/build/options.h"
+#include "boxwood/build/raw_array.h"
 #include "boxwood/tree/bvh.h"
 
 namespace boxwood {
@@ -39,22 +40,34 @@ enum class Plan {
 };
 
 /// What a splitter did with a range: its box, and where the right half begins; range.begin means "a leaf".
+/// A Share is what the splitter wants to be told again when it comes to a half.
+template <class Share>
 struct Step {
   Box3 box;
   std::uint32_t middle;
+  Share left, right;
 };
 
-/// Laws: step() reorders positions inside `range` only, and runs for disjoint ranges at the same time. The
-/// set of primitives on each side, and the order in which a leaf writes its own, depend on the set in the
-/// range only.
+/// The Share of a splitter that keeps nothing.
+struct NoShare {};
+
+/// Laws: step() reorders positions inside `range` only, and runs for disjoint ranges at the same time. What
+/// it does depends on the range's own primitives and on what was done to the ranges that it came from.
 template <class S>
-concept Splitter = requires(S& splitter, Range range, Plan plan, std::span<PrimId> out) {
-  { splitter.step(range, plan) } -> std::same_as<Step>;
-  {splitter.write_leaf(range, out)};
+concept Splitter = requires(S& splitter, Range range, Plan plan, const typename S::Share& share,
+                            std::span<PrimId> out) {
+  { splitter.root() } -> std::same_as<typename S::Share>;
+  { splitter.step(range, plan, share) } -> std::same_as<Step<typename S::Share>>;
+  {splitter.write_leaf(range, share, out)};
 };
 
-/// Removes the nodes that were never made (no count and no child) from a node array with gaps, in order.
-std::vector<BvhNode> squeeze(std::span<const BvhNode> sparse, Executor& executor);
+/// Nodes that lie side by side in an array with gaps.
+struct NodeRun {
+  std::uint32_t begin, count;
+};
+
+/// Moves the runs of `sparse` together, in the order of their places; children are found where they went.
+std::vector<BvhNode> squeeze(std::span<const BvhNode> sparse, std::vector<NodeRun> runs, Executor& executor);
 
 template <Splitter S>
 class TopDown {
@@ -74,71 +87,87 @@ class TopDown {
     Bvh bvh;
     const auto count = full_count_ + static_cast<std::uint32_t>(empty_boxes_.size());
     if (count == 0) return bvh;
-    nodes_.resize(2 * std::size_t(count) - 1);
+    nodes_ = RawArray<BvhNode>(2 * std::size_t(count) - 1);
     bvh.prim_ids.resize(count);
     prim_ids_ = bvh.prim_ids;
-    grow_task(0, 1, {0, count}, 0);
-    bvh.nodes = squeeze(nodes_, executor_);
+    runs_.push_back({0, 1});
+    grow(0, 1, {0, count}, 0, splitter_.root());
+    bvh.nodes = squeeze({nodes_.data(), nodes_.size()}, std::move(runs_), executor_);
     return bvh;
   }
 
  private:
+  using Share = typename S::Share;
+
   /// Smaller ranges are not worth a task, nor a word about progress.
   static constexpr std::uint32_t kTaskSize = 4096;
 
-  /// Grows a subtree whose parent is large, and reports it when nothing below it will.
-  void grow_task(std::uint32_t node_index, std::uint32_t base, Range range, int depth) {
-    grow(node_index, base, range, depth);
-    if (range.size() <= kTaskSize) meter_.advance(range.size());
-  }
-
   /// Grows the subtree of `range` from nodes_[node_index]; its descendants go to nodes_[base] and behind.
-  void grow(std::uint32_t node_index, std::uint32_t base, Range range, int depth) {
-    const Step step = decide(range, depth);
+  void grow(std::uint32_t node_index, std::uint32_t base, Range range, int depth, const Share& share) {
+    if (range.size() <= kTaskSize) {
+      std::uint32_t next = base;
+      grow_small(node_index, next, range, depth, share);
+      if (next > base) add_run({base, next - base});
+      return meter_.advance(range.size());
+    }
+    const Step<Share> step = decide(range, depth, share);
     if (step.middle == range.begin) {
-      nodes_[node_index] = {step.box, range.begin, range.size()};
-      write_leaf(range);
-      if (range.size() > kTaskSize) meter_.advance(range.size());
-      return;
+      make_leaf(node_index, step.box, range, share);
+      return meter_.advance(range.size());
     }
+    meter_.advance(0);
     nodes_[node_index] = {step.box, base, 0};
+    add_run({base, 2});
     const Range left{range.begin, step.middle}, right{step.middle, range.end};
-    const std::uint32_t right_base = base + 2 * left.size();
-    if (range.size() > kTaskSize) {
-      meter_.advance(0);
-      executor_.both([&] { grow_task(base, base + 2, left, depth + 1); },
-                     [&] { grow_task(base + 1, right_base, right, depth + 1); });
-    } else {
-      grow(base, base + 2, left, depth + 1);
-      grow(base + 1, right_base, right, depth + 1);
-    }
+    executor_.both([&] { grow(base, base + 2, left, depth + 1, step.left); },
+                   [&] { grow(base + 1, base + 2 * left.size(), right, depth + 1, step.right); });
   }
 
-  Step decide(Range range, int depth) {
+  /// The same for a range that is one task: nodes_[next] is the next free one.
+  void grow_small(std::uint32_t node_index, std::uint32_t& next, Range range, int depth, const Share& share) {
+    const Step<Share> step = decide(range, depth, share);
+    if (step.middle == range.begin) return make_leaf(node_index, step.box, range, share);
+    const std::uint32_t children = next;
+    next += 2;
+    nodes_[node_index] = {step.box, children, 0};
+    grow_small(children, next, {range.begin, step.middle}, depth + 1, step.left);
+    grow_small(children + 1, next, {step.middle, range.end}, depth + 1, step.right);
+  }
+
+  Step<Share> decide(Range range, int depth, const Share& share) {
     const Plan plan = plan_for(range.size(), options_.max_depth - depth);
-    const Range full{range.begin, min(range.end, full_count_)};
-    if (range.end <= full_count_) return splitter_.step(range, plan);
+    if (range.end <= full_count_) return splitter_.step(range, plan, share);
 
     // Empty boxes: apart from the others first, then halves of them.
-    if (range.begin >= full_count_)
-      return {Box3{},
-              range.begin + (plan == Plan::leaf || range.size() <= leaf_size() ? 0 : range.size() / 2)};
-    return {splitter_.step(full, Plan::leaf).box, plan == Plan::leaf ? range.begin : full_count_};
+    if (range.begin >= full_count_) {
+      const bool is_leaf = plan == Plan::leaf || range.size() <= leaf_size();
+      return {Box3{}, range.begin + (is_leaf ? 0 : range.size() / 2), share, share};
+    }
+    const Range full{range.begin, full_count_};
+    return {splitter_.step(full, Plan::leaf, share).box, plan == Plan::leaf ? range.begin : full_count_,
+            share, share};
   }
 
   Plan plan_for(std::uint32_t count, int levels_left) const {
     if (levels_left == 0 || count == 1) return Plan::leaf;
-    if (!may_halve_ || count <= leaf_size()) return Plan::choose;
+    if (!may_halve_ || count <= leaf_size() || levels_left > static_cast<int>(std::bit_width(count)))
+      return Plan::choose;
     const std::uint32_t leaves = (count - 1) / leaf_size() + 1;
     const int levels_needed = std::bit_width(leaves - 1);
     return levels_left <= levels_needed ? Plan::halve : Plan::choose;
   }
 
-  void write_leaf(Range range) {
+  void make_leaf(std::uint32_t node_index, const Box3& box, Range range, const Share& share) {
+    nodes_[node_index] = {box, range.begin, range.size()};
     const Range full{range.begin, min(range.end, full_count_)};
-    if (full.begin < full.end) splitter_.write_leaf(full, prim_ids_.subspan(full.begin, full.size()));
+    if (full.begin < full.end) splitter_.write_leaf(full, share, prim_ids_.subspan(full.begin, full.size()));
     for (std::uint32_t i = max(range.begin, full_count_); i < range.end; ++i)
       prim_ids_[i] = empty_boxes_[i - full_count_];
+  }
+
+  void add_run(NodeRun run) {
+    std::lock_guard lock(runs_mutex_);
+    runs_.push_back(run);
   }
 
   static std::uint32_t min(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
@@ -152,7 +181,9 @@ class TopDown {
   const bool may_halve_;
   Executor& executor_;
   Meter& meter_;
-  std::vector<BvhNode> nodes_;  // with gaps
+  RawArray<BvhNode> nodes_;  // with gaps
+  std::vector<NodeRun> runs_;
+  std::mutex runs_mutex_;
   std::span<PrimId> prim_ids_;
 };
 

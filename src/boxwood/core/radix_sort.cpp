@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -9,9 +10,9 @@
 namespace boxwood {
 namespace {
 
-constexpr int kDigitBits = 8;
+constexpr int kDigitBits = 11;  // three moves sort 30 bits
 constexpr std::size_t kDigits = 1 << kDigitBits;
-constexpr std::size_t kBlock = 1 << 16;  // large against the 256 counters that each block costs
+constexpr std::size_t kBlock = 1 << 16;  // large against the counters that each block costs
 
 using Counts = std::array<std::size_t, kDigits>;
 
@@ -21,16 +22,16 @@ std::size_t digit_of(Key key, int shift) {
 }
 
 template <class Key>
-void sort_by_bytes(std::span<Key> keys, std::span<std::uint32_t> values, Executor& executor) {
+void sort_by_digits(std::span<Key> keys, std::span<std::uint32_t> values, Executor& executor) {
   if (keys.size() != values.size())
     throw std::invalid_argument("radix_sort: " + std::to_string(keys.size()) + " keys and " +
                                 std::to_string(values.size()) + " values, expected as many of both");
   const std::size_t n = keys.size(), blocks = (n + kBlock - 1) / kBlock;
-  std::vector<Key> other_keys(n);
-  std::vector<std::uint32_t> other_values(n);
+  const auto other_keys = std::make_unique_for_overwrite<Key[]>(n);
+  const auto other_values = std::make_unique_for_overwrite<std::uint32_t[]>(n);
   std::vector<Counts> counts(blocks);
-  std::span<Key> from_keys = keys, to_keys = other_keys;
-  std::span<std::uint32_t> from_values = values, to_values = other_values;
+  std::span<Key> from_keys = keys, to_keys{other_keys.get(), n};
+  std::span<std::uint32_t> from_values = values, to_values{other_values.get(), n};
 
   for (int shift = 0; shift < int(8 * sizeof(Key)); shift += kDigitBits) {
     // Count the digits of each block.
@@ -78,11 +79,11 @@ void sort_by_bytes(std::span<Key> keys, std::span<std::uint32_t> values, Executo
 }  // namespace
 
 void radix_sort(std::span<std::uint32_t> keys, std::span<std::uint32_t> values, Executor& executor) {
-  sort_by_bytes(keys, values, executor);
+  sort_by_digits(keys, values, executor);
 }
 
 void radix_sort(std::span<std::uint64_t> keys, std::span<std::uint32_t> values, Executor& executor) {
-  sort_by_bytes(keys, values, executor);
+  sort_by_digits(keys, values, executor);
 }
 
 }  // namespace boxwood

@@ -1,10 +1,10 @@
 // radix_sort.h: how are a million keys put in order?
 //
-// Least significant digit first: one stable counting sort a byte, from the lowest byte to the highest, after
-// which the keys are sorted (Knuth, The Art of Computer Programming 3, section 5.2.5). Blocks of the input
-// are counted and moved at the same time; each block knows from the counts of those before it where its own
-// keys go (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors", 1991). A byte that is the same in all
-// keys is skipped.
+// Least significant digit first: one stable counting sort a digit of 11 bits, from the lowest to the highest,
+// after which the keys are sorted (Knuth, The Art of Computer Programming 3, section 5.2.5). Blocks of the
+// input are counted and moved at the same time; each block knows from the counts of those before it where its
+// own keys go (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors", 1991). A digit that is the same
+// in all keys is skipped.
 #pragma once
 
 #include <bit>
