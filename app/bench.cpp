@@ -1,7 +1,6 @@
 #include "bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -17,16 +16,12 @@
 namespace boxwood::app {
 namespace {
 
-constexpr double kBuildSeconds = 6;  // no further round of a build that took so long altogether
-constexpr double kBuildShare = 0.4;  // of a scene's time, for the progress bar
+constexpr double kLongBuildMs = 6'000;  // no further round of a build that took so long altogether
+constexpr double kBuildShare = 0.4;     // of a scene's time, for the progress bar
 constexpr std::size_t kBatchSizes[] = {10'000, 100};
 constexpr std::string_view kBatchSizeSet = "bounce1";
 constexpr double kTolerance = 1e-4;  // relative, of hits and of checksums
 constexpr double kEdgeCases = 2;     // hits that may differ in sets of any size
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -52,8 +47,8 @@ struct BuildJob {
   const Engine* engine;
   std::string preset;
   int threads;
-  std::vector<double> seconds;
-  double spent = 0;
+  std::vector<double> ms;
+  double spent_ms = 0;
 };
 
 /// One set of rays through one tree in one way, repeated.
@@ -99,10 +94,8 @@ class Bench {
     share_ = 1 / double(count);
     tell("rays", 0);
     const FlatMesh flat = flatten_triangles(desc);
-    if (flat.mesh.indices.empty())
-      throw std::invalid_argument("the scene " + name +
-                                  " has no triangles, and the bench compares only those");
     report_.scenes.push_back({name, flat.mesh.indices.size(), flat.left_out});
+    if (flat.mesh.indices.empty()) return;
     const std::vector<RaySet> sets = rays_for(desc, flat.mesh);
     desc = {};
 
@@ -150,21 +143,20 @@ class Bench {
     for (int round = 0; round < options_.repetitions; ++round)
       for (std::size_t j = 0; j < jobs.size(); ++j) {
         BuildJob& job = jobs[j];
-        if (job.spent > kBuildSeconds) continue;
+        if (job.spent_ms > kLongBuildMs) continue;
         const double done = kBuildShare * (round + double(j) / double(jobs.size())) / options_.repetitions;
         tell("building", done);
         const auto progress = [&](std::string_view, double) { return ask("building", done); };
-        const double start = seconds_now();
         std::unique_ptr<BuiltScene> tree = job.engine->build(mesh, job.preset, job.threads, progress);
-        job.seconds.push_back(seconds_now() - start);
-        job.spent += job.seconds.back();
+        job.ms.push_back(tree->build_ms());
+        job.spent_ms += job.ms.back();
         trees.try_emplace({job.engine, job.preset}, std::move(tree));
       }
 
     for (const BuildJob& job : jobs) {
       const double bytes = double(trees.at({job.engine, job.preset})->size_bytes());
-      report_.builds.push_back({scene_, job.engine->name(), job.preset, job.threads,
-                                1e3 * median(job.seconds), bytes / double(mesh.indices.size())});
+      report_.builds.push_back({scene_, job.engine->name(), job.preset, job.threads, median(job.ms),
+                                bytes / double(mesh.indices.size())});
     }
     return trees;
   }
@@ -329,7 +321,11 @@ BenchReport bench(const std::vector<std::string>& scenes, const std::vector<std:
       throw Cancelled();
     bench.measure(scenes[i], i, scenes.size(), open(scenes[i]));
   }
-  return bench.take_report();
+  BenchReport report = bench.take_report();
+  if (report.builds.empty())
+    throw std::invalid_argument(
+        fmt::format("{} has no triangles, and the bench compares only those", fmt::join(scenes, ", ")));
+  return report;
 }
 
 }  // namespace boxwood::app

@@ -34,7 +34,7 @@ struct RateReport {
 };
 
 /// The same, ray by ray and on the first number of threads, through the trees of the engine's other presets.
-struct TreeReport : RateReport {
+struct PresetReport : RateReport {
   std::string preset;
 };
 
@@ -52,7 +52,8 @@ struct BuildReport {
 
 struct BenchScene {
   std::string name;
-  std::size_t triangles = 0, left_out = 0;  ///< Shapes other than triangles are left out.
+  std::size_t triangles = 0;  ///< 0: nothing to measure, so no figures.
+  std::size_t left_out = 0;   ///< Other shapes.
 };
 
 struct BenchReport {
@@ -61,7 +62,7 @@ struct BenchReport {
   std::vector<std::string> engines;  ///< Boxwood, then its peers.
   std::vector<BenchScene> scenes;
   std::vector<RateReport> rates;
-  std::vector<TreeReport> trees;
+  std::vector<PresetReport> trees;
   std::vector<BatchSizeReport> batch_sizes;
   std::vector<BuildReport> builds;
   std::vector<std::string> disagreements;  ///< A sentence each; empty when all answers agree.
@@ -85,7 +86,7 @@ std::string difference(const Answers& ours, const Answers& theirs);
 
 /// Measures one scene after the other with every engine; the first is Boxwood. `open(name)` reads a scene.
 /// `progress` is told how far it is; when it returns false, Cancelled is thrown. Throws std::invalid_argument
-/// for a scene without triangles.
+/// when no scene has triangles.
 BenchReport bench(const std::vector<std::string>& scenes, const std::vector<std::unique_ptr<Engine>>& engines,
                   const BenchOptions& options, const std::function<SceneDesc(const std::string&)>& open,
                   const Progress& progress);

@@ -5,6 +5,7 @@
 // rays, and each writes its hits where and how it likes.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -38,6 +39,11 @@ struct Answers {
   friend bool operator==(const Answers&, const Answers&) = default;
 };
 
+/// Seconds on the wall, from some time on.
+inline double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 /// Rays on their way through one scene.
 class Work {
  public:
@@ -58,7 +64,9 @@ struct TraceOptions {
 class BuiltScene {
  public:
   virtual ~BuiltScene() = default;
-  /// The tree and its triangles, without the mesh that the caller holds.
+  /// From a mesh in memory, which the engine may keep or share, to a scene that answers.
+  virtual double build_ms() const = 0;
+  /// The tree and its triangles, without the mesh.
   virtual std::size_t size_bytes() const = 0;
   /// `rays` must outlive the Work.
   virtual std::unique_ptr<Work> prepare(std::span<const Ray> rays, const TraceOptions& options) const = 0;
@@ -72,8 +80,7 @@ class Engine {
   virtual std::vector<std::string> presets() const = 0;
   /// The preset that the rates are measured with.
   virtual std::string traced_preset() const = 0;
-  /// What is timed as the build: from `mesh` to a scene that answers. `mesh` outlives the scene. Throws
-  /// Cancelled when `progress` returns false.
+  /// `mesh` outlives the scene. Throws Cancelled when `progress` returns false.
   virtual std::unique_ptr<BuiltScene> build(const TriangleMesh& mesh, const std::string& preset, int threads,
                                             const Progress& progress) const = 0;
 };

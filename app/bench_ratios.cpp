@@ -112,7 +112,7 @@ std::vector<Figure> own_figures(const BenchReport& report) {
   // What another preset's tree is worth to single rays, beside the engine's usual one.
   const auto add_tree = [&](const std::string& engine, const std::string& preset, const std::string& usual) {
     Spread spread;
-    for (const TreeReport& tree : report.trees)
+    for (const PresetReport& tree : report.trees)
       if (tree.engine == engine && tree.preset == preset)
         if (const auto rate = rate_of(report, tree.scene, engine, tree.mode, tree.set, tree.threads))
           spread.add(tree.mrays_per_s / *rate, place(tree.scene, tree.set));

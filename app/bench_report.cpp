@@ -152,13 +152,14 @@ std::string summary(const BenchReport& report) {
 
 std::string bench_table(const BenchReport& report) {
   const bool has_peers = report.engines.size() > 1;
-  const std::string embree = embree_version();
+  const int rounds = report.options.repetitions;
   std::string text = report.machine + "\n";
-  text += fmt::format("{} rays a set; medians of {} rounds{}\n", with_commas(report.options.rays_per_set),
-                      report.options.repetitions, has_peers ? ", engines taking turns" : "");
-  text += has_peers
-              ? fmt::format("Embree {}: denormals flushed, medium quality where rays are timed\n", embree)
-              : "Embree was not found when this program was configured: Boxwood stands alone\n";
+  text += fmt::format("{} rays a set; {}{}\n", with_commas(report.options.rays_per_set),
+                      rounds == 1 ? "one round" : fmt::format("medians of {} rounds", rounds),
+                      has_peers ? ", engines taking turns" : "");
+  text += has_peers ? fmt::format("Embree {}: denormals flushed, medium quality where rays are timed\n",
+                                  embree_version())
+                    : "Embree was not found when this program was configured: Boxwood stands alone\n";
   for (const std::string& what : report.disagreements) text += "ANSWERS DIFFER: " + what + "\n";
   if (report.disagreements.empty())
     text +=
@@ -169,7 +170,8 @@ std::string bench_table(const BenchReport& report) {
   for (const BenchScene& scene : report.scenes) {
     text += fmt::format("\n{}: {} triangles", scene.name, with_commas(scene.triangles));
     if (scene.left_out > 0) text += fmt::format(" ({} other shapes left out)", with_commas(scene.left_out));
-    text += "\n\n" + rate_table(report, scene) + "\n" + build_table(report, scene);
+    text += "\n";
+    if (scene.triangles > 0) text += "\n" + rate_table(report, scene) + "\n" + build_table(report, scene);
   }
   return text + summary(report);
 }
@@ -185,7 +187,7 @@ std::string bench_json(const BenchReport& report) {
   ordered_json rates = ordered_json::array(), builds = ordered_json::array(), trees = ordered_json::array(),
                batch_sizes = ordered_json::array();
   for (const RateReport& rate : report.rates) rates.push_back(rate_json(rate));
-  for (const TreeReport& tree : report.trees) {
+  for (const PresetReport& tree : report.trees) {
     trees.push_back(rate_json(tree));
     trees.back()["preset"] = tree.preset;
   }
@@ -219,11 +221,13 @@ std::string bench_chart(const BenchReport& report) {
   for (const std::string& engine : report.engines)
     for (const std::string& mode : modes_of(report, engine)) chart.series.push_back(engine + " " + mode);
   if (report.engines.size() > 1)
-    chart.note = "Behind each row: Boxwood's batch over the better of " + report.engines[1] + "'s two.";
+    chart.note = fmt::format("Behind each row: boxwood batch over the better of {0} single and {0} packet16.",
+                             report.engines[1]);
 
   for (const int threads : report.options.threads) {
     DotPanel panel{fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"), {}};
     for (const BenchScene& scene : report.scenes) {
+      if (scene.triangles == 0) continue;
       DotGroup group{short_name(scene.name), {}};
       for (const std::string& set : sets_of(report, scene.name)) {
         DotRow row{set, {}, ""};

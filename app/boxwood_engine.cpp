@@ -62,7 +62,8 @@ class BoxwoodWork final : public Work {
 
 class BoxwoodScene final : public BuiltScene {
  public:
-  explicit BoxwoodScene(Scene scene) : scene_(std::move(scene)) {}
+  BoxwoodScene(Scene scene, double build_ms) : scene_(std::move(scene)), build_ms_(build_ms) {}
+  double build_ms() const override { return build_ms_; }
   std::size_t size_bytes() const override {
     const SceneStatistics statistics = scene_.statistics();
     return statistics.tree_bytes + statistics.geometry_bytes;
@@ -73,6 +74,7 @@ class BoxwoodScene final : public BuiltScene {
 
  private:
   Scene scene_;
+  double build_ms_;
 };
 
 class BoxwoodEngine final : public Engine {
@@ -89,7 +91,9 @@ class BoxwoodEngine final : public Engine {
     options.progress = progress;
     SceneDesc desc;
     desc.add(mesh);
-    return std::make_unique<BoxwoodScene>(Scene(std::move(desc), options));
+    const double start = seconds_now();
+    Scene scene(std::move(desc), options);
+    return std::make_unique<BoxwoodScene>(std::move(scene), 1e3 * (seconds_now() - start));
   }
 };
 

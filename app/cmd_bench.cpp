@@ -52,6 +52,7 @@ void bench_command(const BenchArguments& arguments) {
   refuse_repeated(arguments.scenes);
 
   // Find out what cannot work before any work is done.
+  for (const std::string& scene : arguments.scenes) check_scene_exists(scene);
   for (const std::string& path : {arguments.json, arguments.plot})
     if (!path.empty()) check_writable(path);
   BenchOptions options;
@@ -101,15 +102,17 @@ void add_bench(CLI::App& program) {
                    "only their triangles, in world space")
       ->capture_default_str();
   command
-      ->add_option("--sets", arguments->sets,
-                   "Which rays: primary, occlusion, bounce1, bounce2,\nrandom; all if not given")
+      ->add_option(
+          "--sets", arguments->sets,
+          "Which rays, commas between: primary, occlusion,\nbounce1, bounce2, random; all if not given")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(BenchOptions{}.sets).description(""));
   command->add_option("--rays", arguments->rays,
                       "Also these rays: a file of little-endian floats,\n"
                       "origin x y z, t_min, direction x y z, t_max");
-  command->add_option("--threads", arguments->threads, "On how many threads; 0 means all [1,0]")
+  command
+      ->add_option("--threads", arguments->threads, "On how many threads, commas between; 0 means\nall [1,0]")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Range(0, 4096).description(""));
@@ -134,7 +137,8 @@ void add_bench(CLI::App& program) {
       "its robust mode. Each is handed its rays in its own memory layout.\n"
       "Answers are compared: Boxwood's to the last bit; Embree's hits and sums of t within\n"
       "1e-4 and two rays. Where they differ, the output says so and the exit code is 1.\n"
-      "Shapes other than triangles are left out.\n\n" +
+      "Shapes other than triangles are left out. Large scenes take minutes; on a machine\n"
+      "with other work, ratios are worth more than rates.\n\n" +
       gallery_help() +
       "\nExamples:\n"
       "  boxwood bench\n"

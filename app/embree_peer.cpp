@@ -209,6 +209,7 @@ class EmbreeScene final : public BuiltScene {
               bool is_robust, const Progress& progress)
       : device_(std::move(device)) {
     const std::int64_t before = device_->bytes();
+    const double start = seconds_now();
     scene_ = rtcNewScene(*device_);
     rtcSetSceneFlags(scene_, is_robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(scene_, quality_of(preset));
@@ -236,6 +237,7 @@ class EmbreeScene final : public BuiltScene {
     };
     rtcSetSceneProgressMonitorFunction(scene_, tell, &listener);
     rtcCommitScene(scene_);
+    build_ms_ = 1e3 * (seconds_now() - start);
     rtcSetSceneProgressMonitorFunction(scene_, nullptr, nullptr);
     const RTCError error = rtcGetDeviceError(*device_);
     if (error != RTC_ERROR_NONE) {
@@ -250,6 +252,7 @@ class EmbreeScene final : public BuiltScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
+  double build_ms() const override { return build_ms_; }
   std::size_t size_bytes() const override { return size_bytes_; }
   std::unique_ptr<Work> prepare(std::span<const Ray> rays, const TraceOptions& options) const override {
     const bool is_closest = options.question == Question::closest_hit;
@@ -264,6 +267,7 @@ class EmbreeScene final : public BuiltScene {
  private:
   std::shared_ptr<const Device> device_;
   RTCScene scene_;
+  double build_ms_ = 0;
   std::size_t size_bytes_ = 0;
 };
 

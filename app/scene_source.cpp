@@ -19,22 +19,27 @@ std::string written(const gallery::Entry& entry) {
   return std::string(entry.name) + (entry.default_size > 0 ? ":N" : "");
 }
 
+bool is_made(const std::string& name_or_path) {
+  return gallery::is_known(name_or_path.substr(0, name_or_path.find(':')));
+}
+
 }  // namespace
 
-SceneDesc open_scene(const std::string& name_or_path, Executor& executor) {
-  if (gallery::is_known(name_or_path.substr(0, name_or_path.find(':')))) return gallery::make(name_or_path);
-
+void check_scene_exists(const std::string& name_or_path) {
   // A file that may not be seen is left to the reader, which says why.
   std::error_code hidden;
-  if (!std::filesystem::exists(name_or_path, hidden) && !hidden) {
-    std::string names;
-    for (const gallery::Entry& entry : gallery::entries())
-      names += (names.empty() ? "" : ", ") + written(entry);
-    throw FileError(
-        name_or_path, "",
-        "there is no such file, and no scene of that name that the program makes itself (" + names + ")");
-  }
-  return io::load(name_or_path, &executor);
+  if (is_made(name_or_path) || std::filesystem::exists(name_or_path, hidden) || hidden) return;
+  std::string names;
+  for (const gallery::Entry& entry : gallery::entries())
+    names += (names.empty() ? "" : ", ") + written(entry);
+  throw FileError(
+      name_or_path, "",
+      "there is no such file, and no scene of that name that the program makes itself (" + names + ")");
+}
+
+SceneDesc open_scene(const std::string& name_or_path, Executor& executor) {
+  check_scene_exists(name_or_path);
+  return is_made(name_or_path) ? gallery::make(name_or_path) : io::load(name_or_path, &executor);
 }
 
 BuildOptions build_options(const std::string& preset) {

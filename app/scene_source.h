@@ -14,6 +14,10 @@ namespace boxwood::app {
 /// lists the names.
 SceneDesc open_scene(const std::string& name_or_path, Executor& executor);
 
+/// Throws FileError as open_scene does when there is neither such a file nor such a name. Costs nothing, so
+/// that of many scenes a wrong one is found before the first is worked on.
+void check_scene_exists(const std::string& name_or_path);
+
 /// The preset by its name, "fast", "balanced" or "best"; anything else is balanced.
 BuildOptions build_options(const std::string& preset);
 

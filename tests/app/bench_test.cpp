@@ -102,6 +102,7 @@ class Liar final : public Engine {
  private:
   struct Tree final : BuiltScene {
     Tree(std::unique_ptr<BuiltScene> tree, const Lie& told) : truth(std::move(tree)), lie(told) {}
+    double build_ms() const override { return truth->build_ms(); }
     std::size_t size_bytes() const override { return truth->size_bytes(); }
     std::unique_ptr<Work> prepare(std::span<const Ray> rays, const TraceOptions& options) const override {
       return std::make_unique<LyingWork>(truth->prepare(rays, options), lie);
@@ -177,6 +178,19 @@ TEST(Bench, FlattensInstancesAndLeavesOtherShapesOut) {
 
 TEST(Bench, RefusesScenesWithoutTriangles) {
   EXPECT_THROW(run_bench(boxwood_alone(), small_bench(), "spheres:10"), std::invalid_argument);
+}
+
+TEST(Bench, GoesOnWithTheScenesThatHaveTriangles) {
+  BenchOptions options = small_bench();
+  options.sets = {"random"};
+  const BenchReport report = bench({"spheres:10", "soup:100"}, boxwood_alone(), options, gallery::make, {});
+  ASSERT_EQ(report.scenes.size(), 2u);
+  EXPECT_EQ(report.scenes[0].triangles, 0u);
+  EXPECT_EQ(report.scenes[0].left_out, 10u);
+  for (const RateReport& rate : report.rates) EXPECT_EQ(rate.scene, "soup:100");
+  EXPECT_NE(bench_table(report).find("spheres:10: 0 triangles (10 other shapes left out)\n\nsoup:100"),
+            std::string::npos);
+  EXPECT_EQ(bench_chart(report).find("spheres"), std::string::npos);
 }
 
 TEST(Bench, StopsWhenAsked) {
@@ -371,7 +385,7 @@ TEST_F(RayFile, AndWrongUsage) {
   expect_code("soup:100 soup:100", 2, "twice");
   expect_code("soup:100 --rays nosuch.f32", 1, "nosuch.f32");
   expect_code("soup:100 --json no/folder/a.json", 1, "no/folder");
-  expect_code("nosuch.obj --quiet", 1, "nosuch.obj");
+  expect_code("soup:20000000 nosuch.obj", 1, "nosuch.obj");  // found before the long work
   expect_code("spheres:10 --quiet", 1, "no triangles");
   EXPECT_EQ(file_count(), 0u);
 }
