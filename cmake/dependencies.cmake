@@ -12,6 +12,7 @@ macro(boxwood_require name package)
 endmacro()
 
 boxwood_require(TBB libtbb-dev)
+boxwood_require(hwy libhwy-dev CONFIG)
 
 if(BOXWOOD_BUILD_APP)
   boxwood_require(OpenImageIO libopenimageio-dev)

@@ -15,6 +15,7 @@ g++                   the compiler, with C++20
 ccache                makes a second build fast
 python3               the layer check, the docs check and the test runner
 libtbb-dev            oneTBB: parallel loops
+libhwy-dev            Highway: SIMD with a choice at run time
 libopenimageio-dev    pictures and textures
 libtinygltf-dev       glTF files
 libtinyobjloader-dev  OBJ files

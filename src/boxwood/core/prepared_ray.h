@@ -30,14 +30,18 @@ struct Interval {
   bool is_empty() const { return !(entry <= exit); }
 };
 
-class PreparedRay {
- public:
-  Vec3 origin, direction;
-  float t_min, t_max;  ///< t_max = -inf when the ray cannot hit anything (see Ray).
-
-  // The shear: axes in the order in which the triangle test reads them, and its three constants.
+/// What the triangle test reads: where the line starts, the axes in the order in which the test takes them, and
+/// the constants of the shear.
+struct RayShear {
+  Vec3 origin;
   int axis_x = 0, axis_y = 1, axis_z = 2;
   float shear_x = 0, shear_y = 0, shear_z = 0;
+};
+
+class PreparedRay : public RayShear {
+ public:
+  Vec3 direction;
+  float t_min, t_max;  ///< t_max = -inf when the ray cannot hit anything (see Ray).
 
   /// Prepares `ray` to meet things inside `bounds`. Cost: about a hundred instructions.
   PreparedRay(const Ray& ray, const Box3& bounds)
@@ -47,7 +51,7 @@ class PreparedRay {
 
   /// The same for a ray inside an instance, where t_min may be negative or -inf.
   PreparedRay(Vec3 origin, Vec3 direction, float t_min, float t_max, const Box3& bounds)
-      : origin(origin), direction(direction), t_min(t_min), t_max(t_max) {
+      : RayShear{origin}, direction(direction), t_min(t_min), t_max(t_max) {
     prepare(bounds);
   }
 
@@ -60,6 +64,10 @@ class PreparedRay {
     const float far_plane = backward_[axis] ? lower : upper;
     return {near_plane * inverse_[axis] + near_shift_[axis], far_plane * inverse_[axis] + far_shift_[axis]};
   }
+  /// The constants of the slabs, as in the file's head; 0 and -+inf on an axis that culls nothing.
+  Vec3 inverse() const { return inverse_; }
+  Vec3 near_shift() const { return near_shift_; }
+  Vec3 far_shift() const { return far_shift_; }
   /// Whether the ray meets the planes across `axis` from the upper to the lower.
   bool is_backward(int axis) const { return backward_[axis]; }
 

@@ -52,7 +52,7 @@ inline bool exact_triangle_test(Point2 a, Point2 b, Point2 c) {
 
 /// Tests the line of `ray` against the triangle (a, b, c), both faces. On a crossing fills t, u (weight of b)
 /// and v (weight of c). `t` is not compared with [t_min, t_max].
-inline bool intersect_triangle(const PreparedRay& ray, Vec3 a, Vec3 b, Vec3 c, Crossing& crossing) {
+inline bool intersect_triangle(const RayShear& ray, Vec3 a, Vec3 b, Vec3 c, Crossing& crossing) {
   using detail::Point2;
   const int kx = ray.axis_x, ky = ray.axis_y, kz = ray.axis_z;
   const float sx = ray.shear_x, sy = ray.shear_y, sz = ray.shear_z;

@@ -1,0 +1,221 @@
+// interleave-inl.h: many independent rays through a tree, on one thread. Compiled once for each instruction
+// set.
+//
+// A single ray waits most of its time: for the chain of its own operations, for the cache, for a mispredicted
+// branch. Here kInFlight rays take turns. A turn is one step without branches: test a node's children, put
+// those that are entered on the ray's stack, prefetch what is now on top, and go on with another ray. (In
+// databases: asynchronous memory access chaining, Kocberber et al., VLDB 2015.) What a ray stands before
+// decides on which of three lists it waits: nodes, leaves, or done; each list is worked off by a loop that
+// does one thing, so that there is little to mispredict.
+
+#if defined(BOXWOOD_SIMD_INTERLEAVE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXWOOD_SIMD_INTERLEAVE_INL_H
+#undef BOXWOOD_SIMD_INTERLEAVE_INL_H
+#else
+#define BOXWOOD_SIMD_INTERLEAVE_INL_H
+#endif
+
+#include <memory>
+
+#include "boxwood/simd/single-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::simd::HWY_NAMESPACE {
+
+inline constexpr int kInFlight = 24;
+
+/// Enough for 17 levels of eight children; deeper trees take one ray at a time.
+inline constexpr int kShortStack = 128;
+
+/// A ray and where it stands: *top is what it visits next, and top[kShortStack] its key.
+struct alignas(64) RayInFlight {
+  KernelRay ray;
+  TriangleHit hit;  // hit.t is the limit
+  std::int32_t* top;
+  std::uint32_t ray_index;
+  std::int32_t refs[kShortStack];
+  std::int32_t keys[kShortStack];
+};
+
+/// A block whose planes are still to be tested.
+struct OpenBlock {
+  RayInFlight* ray;
+  const TriangleBlock* block;
+  Crossed crossed;
+};
+
+template <bool kAny, class Output>
+class Interleaved {
+ public:
+  Interleaved(const char* pool, const Box3& bounds, std::span<const Ray> rays, const Output& output,
+              std::vector<std::uint32_t>& unusual)
+      : pool_(pool), bounds_(bounds), rays_(rays), output_(output), unusual_(unusual) {}
+
+  void run(RayInFlight* flight) {
+    List nodes{lists_[kNode]}, leaves{lists_[kLeaf]}, done{lists_[kDone]};
+    for (int i = 0; i < kInFlight; ++i)
+      if (start(flight[i])) *nodes.end++ = flight + i;
+
+    while (true) {
+      // One step for every ray that stands before a node.
+      RayInFlight **i = lists_[kNode], **end = nodes.end;
+      nodes.end = lists_[kNode];
+      for (; i != end; ++i) append(**i, step(**i), nodes, leaves, done);
+      if (leaves.end - lists_[kLeaf] < kInFlight / 2 && nodes.end != lists_[kNode]) continue;
+
+      // Enough rays stand before a leaf: test, take it off the stack, and see where each goes next.
+      visit_leaves(leaves.end);
+      i = lists_[kLeaf], end = leaves.end;
+      leaves.end = lists_[kLeaf];
+      for (; i != end; ++i) append(**i, (*i)->top - 1, nodes, leaves, done);
+
+      // Hand out the answers of rays that are done, and start others in their place.
+      i = lists_[kDone], end = done.end;
+      done.end = lists_[kDone];
+      for (; i != end; ++i) {
+        RayInFlight* ray = *i;
+        output_(ray->ray_index, ray->hit);
+        if (start(*ray)) *nodes.end++ = ray;
+      }
+      if (nodes.end == lists_[kNode] && leaves.end == lists_[kLeaf]) return;
+    }
+  }
+
+ private:
+  enum Kind { kNode = 0, kLeaf = 1, kDone = 2 };  // the low bits of a reference
+  struct List {
+    RayInFlight** end;
+  };
+
+  /// Prefetches what is on top of the stack, and puts the ray on the list where it belongs: without a branch,
+  /// on all three, of which one grows.
+  HWY_INLINE void append(RayInFlight& ray, std::int32_t* top, List& nodes, List& leaves, List& done) {
+    ray.top = top;
+    const auto next = static_cast<std::uint32_t>(*top);
+    prefetch_lines(node_at(pool_, next));
+    *nodes.end = *leaves.end = *done.end = &ray;
+    const std::uint32_t kind = next & 3;
+    done.end += kind >> 1;
+    leaves.end += kind & 1;
+    nodes.end += kind == 0;
+  }
+
+  /// Gives the place to the next ray that is ordinary; false when there is none left.
+  HWY_INLINE bool start(RayInFlight& place) {
+    while (next_ < rays_.size()) {
+      const std::size_t i = next_++;
+      if (HWY_UNLIKELY(!prepare(rays_[i], bounds_, place.ray))) {
+        unusual_.push_back(static_cast<std::uint32_t>(i));
+        continue;
+      }
+      place.hit.t = rays_[i].t_max + 0.0f;
+      place.hit.key = place.hit.block = TriangleHit::kNone;
+      place.ray_index = static_cast<std::uint32_t>(i);
+      place.refs[0] = static_cast<std::int32_t>(kBottom);
+      place.keys[0] = 0;
+      place.refs[1] = 0;
+      place.top = place.refs + 1;
+      return true;
+    }
+    return false;
+  }
+
+  /// Puts the children that the ray enters in the place of the node on top.
+  HWY_INLINE std::int32_t* step(RayInFlight& ray) {
+    const DIW di;
+    std::int32_t* top = ray.top;
+    const char* node = node_at(pool_, static_cast<std::uint32_t>(*top));
+    const Slabs slabs = cross_slabs(node, ray.ray, ray.hit.t);
+    const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
+    const std::size_t count = hn::CountTrue(di, slabs.enters);
+    if constexpr (kAny) {
+      hn::StoreU(hn::Compress(hn::Load(di, children), slabs.enters), di, top);
+    } else {
+      push_children(di, make_keys(slabs.entry), slabs.enters, children, count, top + kShortStack, top);
+    }
+    return top + count - 1;
+  }
+
+  /// Tests the leaves that rays stand before.
+  HWY_INLINE void visit_leaves(RayInFlight** end) {
+    // The edges first, and without a branch on what they say.
+    OpenBlock* open = open_;
+    for (RayInFlight** i = lists_[kLeaf]; i != end; ++i) {
+      RayInFlight* ray = *i;
+      const auto ref = static_cast<std::uint32_t>(*ray->top);
+      const TriangleBlock* block = block_at(pool_, ref);
+      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) {
+        *open = {ray, block, test_edges(*block, ray->ray)};
+        open += open->crossed.maybe != 0;
+      }
+    }
+
+    // The planes of what is left.
+    for (OpenBlock* o = open_; o != open; ++o) {
+      RayInFlight& ray = *o->ray;
+      HWY_ALIGN float ts[kBlockWidth];
+      const std::uint32_t lanes = test_planes(*o->block, ray.ray, o->crossed, ray.hit.t, ts);
+      if constexpr (kAny) {
+        if (lanes == 0) continue;
+        ray.hit.block = 0;
+        ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
+      } else {
+        if (lanes && take_closest(pool_, o->block, lanes, ts, ray.hit)) cull(ray);
+      }
+    }
+  }
+
+  /// Keeps of the stack what may still matter, below the leaf on top.
+  HWY_INLINE void cull(RayInFlight& ray) {
+    const DIW di;
+    const VIW limit = hn::Set(di, std::bit_cast<std::int32_t>(ray.hit.t) | 7);
+    std::int32_t *to = ray.refs + 1, *top = ray.top;
+    for (std::int32_t* from = to; from < top; from += kWidth) {
+      const VIW keys = hn::LoadU(di, from + kShortStack), refs = hn::LoadU(di, from);
+      const auto keep =
+          hn::And(hn::Not(hn::Gt(keys, limit)), hn::FirstN(di, static_cast<std::size_t>(top - from)));
+      hn::StoreU(hn::Compress(keys, keep), di, to + kShortStack);
+      hn::StoreU(hn::Compress(refs, keep), di, to);
+      to += hn::CountTrue(di, keep);
+    }
+    ray.top = to;
+  }
+
+  const char* pool_;
+  const Box3& bounds_;
+  std::span<const Ray> rays_;
+  const Output& output_;
+  std::vector<std::uint32_t>& unusual_;
+  std::size_t next_ = 0;
+  RayInFlight* lists_[3][kInFlight + 1];
+  OpenBlock open_[kInFlight * kMaxLeafBlocks + 1];
+};
+
+/// Calls output(i, hit) for each ordinary ray, in no order; `unusual` gets the indices of the others.
+template <bool kAny, class Output>
+void trace_interleaved(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
+                       const Output& output, std::vector<std::uint32_t>& unusual) {
+  if (tree.max_stack() + kWidth <= kShortStack) {
+    static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
+    return Interleaved<kAny, Output>(tree.pool(), bounds, rays, output, unusual).run(flight.get());
+  }
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    KernelRay ray;
+    if (!prepare(rays[i], bounds, ray)) {
+      unusual.push_back(i);
+      continue;
+    }
+    TriangleHit hit{rays[i].t_max + 0.0f};
+    if constexpr (kAny) {
+      if (any_hit_one(tree.pool(), ray, hit.t)) hit.block = 0;
+    } else {
+      closest_hit_one(tree.pool(), ray, hit);
+    }
+    output(i, hit);
+  }
+}
+
+}  // namespace boxwood::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

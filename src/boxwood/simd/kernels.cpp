@@ -1,0 +1,126 @@
+#include "boxwood/simd/kernels.h"
+
+// Compile what follows once for each instruction set that the compiler knows.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "boxwood/simd/kernels.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target.h comes first
+#include <hwy/highway.h>
+
+#include "boxwood/simd/interleave-inl.h"
+#include "boxwood/simd/single-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::simd::HWY_NAMESPACE {
+
+bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit) {
+  KernelRay kernel_ray;
+  if (!prepare(ray, bounds, kernel_ray)) return false;
+  hit = {ray.t_max + 0.0f};
+  closest_hit_one(tree.pool(), kernel_ray, hit);
+  if (!hit.is_hit()) hit.t = kInfinity;
+  return true;
+}
+
+bool any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit) {
+  KernelRay kernel_ray;
+  if (!prepare(ray, bounds, kernel_ray)) return false;
+  is_hit = any_hit_one(tree.pool(), kernel_ray, ray.t_max + 0.0f);
+  return true;
+}
+
+bool all_hits(const TriangleTree& tree, const Ray& ray, const Box3& bounds, std::vector<TriangleHit>& hits) {
+  KernelRay kernel_ray;
+  if (!prepare(ray, bounds, kernel_ray)) return false;
+  all_hits_one(tree.pool(), kernel_ray, ray.t_max + 0.0f, hits);
+  return true;
+}
+
+void closest_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, TriangleHit* hits,
+                  std::vector<std::uint32_t>& unusual) {
+  const auto output = [&](std::uint32_t i, const TriangleHit& hit) {
+    hits[i] = hit;
+    if (!hit.is_hit()) hits[i].t = kInfinity;
+  };
+  trace_interleaved<false>(tree, rays, bounds, output, unusual);
+}
+
+void any_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
+              std::vector<std::uint32_t>& unusual) {
+  const auto output = [&](std::uint32_t i, const TriangleHit& hit) { hits[i] = hit.is_hit(); };
+  trace_interleaved<true>(tree, rays, bounds, output, unusual);
+}
+
+constexpr std::string_view target_name() {
+  switch (HWY_TARGET) {
+    case HWY_AVX3:
+      return "avx512";
+    case HWY_AVX2:
+      return "avx2";
+    case HWY_SSE4:
+      return "sse4";
+    case HWY_NEON:
+      return "neon";
+    case HWY_WASM:
+      return "wasm";
+    default:
+      return "other";
+  }
+}
+
+const Kernels* table() {
+  static constexpr Kernels kTable{target_name(), kWidth,       closest_hit, any_hit,
+                                  all_hits,      closest_hits, any_hits};
+  return &kTable;
+}
+
+}  // namespace boxwood::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+#include <array>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace boxwood::simd {
+
+HWY_EXPORT(table);
+
+std::span<const Kernels* const> available_kernels() {
+  // Ask for the choice among all, among all but the best, and so on: Highway dispatches to the best that is
+  // allowed.
+  static const std::vector<const Kernels*> all = [] {
+    std::vector<const Kernels*> found;
+    const std::int64_t supported = hwy::SupportedTargets();
+    for (std::int64_t targets = HWY_TARGETS & supported; targets; targets &= targets - 1) {
+      hwy::SetSupportedTargetsForTest(targets & -targets);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      found.push_back(HWY_DYNAMIC_DISPATCH(table)());
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return found;
+  }();
+  return all;
+}
+
+const Kernels* kernels() {
+  static const Kernels* const chosen = []() -> const Kernels* {
+    const char* name = std::getenv("BOXWOOD_TARGET");
+    const auto all = available_kernels();
+    if (name == nullptr || *name == 0) return all.empty() ? nullptr : all.front();
+    std::string known = "scalar";
+    for (const Kernels* k : all) {
+      if (k->name == name) return k;
+      known = std::string(k->name) + ", " + known;
+    }
+    if (std::string_view(name) == "scalar") return nullptr;
+    throw std::invalid_argument("BOXWOOD_TARGET is \"" + std::string(name) + "\"; this machine has " + known);
+  }();
+  return chosen;
+}
+
+}  // namespace boxwood::simd
+#endif

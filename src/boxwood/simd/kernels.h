@@ -1,0 +1,65 @@
+// kernels.h: the door to the SIMD kernels. Ordinary C++: nothing of what is behind it shows.
+//
+// The algorithms (the *-inl.h files of this room) are written once and compiled for each instruction set;
+// here one is picked at run time. All give the same answers, bit for bit: those of shape/triangle.h under
+// shape/gate.h by brute force.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "boxwood/core/ray.h"
+#include "boxwood/simd/triangle_tree.h"
+
+namespace boxwood::simd {
+
+/// What a kernel found, by its place in the tree. A miss has no block and t = +inf.
+struct TriangleHit {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  float t = kInfinity;
+  std::uint32_t key = kNone;    ///< TriangleBlock::key of the triangle.
+  std::uint32_t block = kNone;  ///< For TriangleTree::block_at.
+  std::uint32_t lane = 0;       ///< In its block.
+
+  bool is_hit() const { return block != kNone; }
+};
+
+/// The kernels of one instruction set.
+///
+/// `bounds` are those that a PreparedRay would be made with: of the whole scene. Kernels take ordinary rays
+/// (of finite numbers, with t_min <= t_max, and of a size at which no float overflows on the way); any other
+/// ray is handed back for plain C++ to answer: single-ray calls return false and leave the answer alone,
+/// batches note the ray's index. Preconditions: tree.width() == width, tree.is_ordinary(), and the tree is
+/// not empty. No call allocates, but for what it appends to vectors; any number of threads may call.
+struct Kernels {
+  std::string_view name;  ///< "avx512", "avx2", "sse4", "neon", "wasm".
+  int width;              ///< Children of a node in the trees that these kernels walk.
+
+  /// The crossing of smallest t in [t_min, t_max], equal t by key.
+  bool (*closest_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit);
+  /// Whether there is a crossing in [t_min, t_max].
+  bool (*any_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit);
+  /// Appends every crossing in [t_min, t_max] once for each block that its triangle stands in; in no order.
+  bool (*all_hits)(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
+                   std::vector<TriangleHit>& hits);
+
+  /// The same for many rays, on the calling thread: hits[i] answers rays[i]. The indices of rays that are not
+  /// ordinary are appended to `unusual`.
+  void (*closest_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
+                       TriangleHit* hits, std::vector<std::uint32_t>& unusual);
+  void (*any_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
+                   std::vector<std::uint32_t>& unusual);
+};
+
+/// Every set of kernels that this program has and this machine can run, the fastest first. May be empty: then
+/// plain C++ answers everything.
+std::span<const Kernels* const> available_kernels();
+
+/// The fastest of them, or the one that the environment variable BOXWOOD_TARGET names; null for "scalar", and
+/// where there is none. Throws std::invalid_argument when BOXWOOD_TARGET names something else. Reads the
+/// environment once.
+const Kernels* kernels();
+
+}  // namespace boxwood::simd

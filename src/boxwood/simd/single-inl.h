@@ -1,0 +1,211 @@
+// single-inl.h: one ray through a tree. Compiled once for each instruction set (kernels.cpp).
+
+#if defined(BOXWOOD_SIMD_SINGLE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXWOOD_SIMD_SINGLE_INL_H
+#undef BOXWOOD_SIMD_SINGLE_INL_H
+#else
+#define BOXWOOD_SIMD_SINGLE_INL_H
+#endif
+
+#include <bit>
+
+#include "boxwood/simd/block-inl.h"
+#include "boxwood/simd/node-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::simd::HWY_NAMESPACE {
+
+/// Deep enough for kMaxDepth levels that each leave all children but one behind, and some room to store whole
+/// vectors.
+inline constexpr int kStackSize = 96 * (kWidth - 1) + 2 * kWidth;
+
+/// The bottom of a stack: neither node nor leaf.
+inline constexpr std::uint32_t kBottom = 2;
+
+HWY_INLINE const TriangleBlock* block_at(const char* pool, std::uint32_t ref) {
+  return reinterpret_cast<const TriangleBlock*>(pool + std::size_t(ref & ~15u) * 2);
+}
+HWY_INLINE const char* node_at(const char* pool, std::uint32_t ref) {
+  return pool + std::size_t(ref) * 2;
+}
+
+/// Takes the crossings of `lanes`, keeps the first in the order of the contract. Returns whether `hit`
+/// changed.
+HWY_INLINE bool take_closest(const char* pool, const TriangleBlock* block, std::uint32_t lanes,
+                             const float* ts, TriangleHit& hit) {
+  bool changed = false;
+  for (; lanes; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
+    const float t = ts[lane];
+    if (t > hit.t || (t == hit.t && block->key[lane] >= hit.key)) continue;
+    hit = {t, block->key[lane],
+           static_cast<std::uint32_t>((reinterpret_cast<const char*>(block) - pool) / 32), lane};
+    changed = true;
+  }
+  return changed;
+}
+
+/// Tests the blocks of a leaf against [ray.t_min, hit.t]. Returns whether `hit` changed.
+HWY_INLINE bool visit_leaf(const char* pool, std::uint32_t ref, const KernelRay& ray, TriangleHit& hit) {
+  const TriangleBlock* block = block_at(pool, ref);
+  bool changed = false;
+  for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) {
+    const Crossed crossed = test_edges(*block, ray);
+    if (crossed.maybe == 0) continue;
+    HWY_ALIGN float ts[kBlockWidth];
+    changed |= take_closest(pool, block, test_planes(*block, ray, crossed, hit.t, ts), ts, hit);
+  }
+  return changed;
+}
+
+/// The first four lanes of a vector of children, and four lanes as such a vector.
+template <class D>
+HWY_INLINE hn::Vec<DI4> first_four(D, hn::Vec<D> v) {
+  if constexpr (kWidth == 4)
+    return v;
+  else
+    return hn::LowerHalf(DI4(), v);
+}
+template <class D>
+HWY_INLINE hn::Vec<D> as_children(D d, hn::Vec<DI4> v) {
+  if constexpr (kWidth == 4)
+    return v;
+  else
+    return hn::ZeroExtendVector(d, v);
+}
+
+/// Stores the references of the children that are entered, and their keys, the farthest first.
+template <class D>
+HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const std::int32_t* children,
+                              std::size_t count, std::int32_t* stack_keys, std::int32_t* stack_refs) {
+  // What is not entered becomes 0 and so sorts last. (With AVX-512 the compression sees to that.)
+  if constexpr (HWY_TARGET > HWY_AVX3) keys = hn::IfThenElseZero(enters, keys);
+  keys = hn::Compress(keys, enters);
+  if (HWY_LIKELY(count <= 4)) {
+    const DI4 d4;
+    const hn::Vec<DI4> first = sort_descending(first_four(di, keys));
+    hn::StoreU(first, d4, stack_keys);
+    hn::Vec<D> lanes = as_children(di, first);
+    if constexpr (kWidth == 4 || HWY_IS_DEBUG_BUILD)
+      lanes = hn::And(lanes, hn::Set(di, 7));  // others look at 3 bits
+    const hn::Vec<D> sorted = hn::TableLookupLanes(hn::Load(di, children), hn::IndicesFromVec(di, lanes));
+    hn::StoreU(first_four(di, sorted), d4, stack_refs);
+    return;
+  }
+
+  // Rare: one by one.
+  HWY_ALIGN std::int32_t found[kWidth];
+  hn::Store(keys, di, found);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t at = i;
+    for (; at > 0 && stack_keys[at - 1] < found[i]; --at) {
+      stack_keys[at] = stack_keys[at - 1];
+      stack_refs[at] = stack_refs[at - 1];
+    }
+    stack_keys[at] = found[i];
+    stack_refs[at] = children[found[i] & 7];
+  }
+}
+
+HWY_INLINE void closest_hit_one(const char* pool, const KernelRay& ray, TriangleHit& hit) {
+  const DIW di;
+  HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
+  keys[0] = 0;
+  refs[0] = static_cast<std::int32_t>(kBottom);
+  int top = 0;  // of the stack
+  std::uint32_t current = 0;
+  std::int32_t limit_key = std::bit_cast<std::int32_t>(hit.t) | 7;
+  while (true) {
+    if ((current & 3) == 0) {
+      const char* node = node_at(pool, current);
+      const Slabs slabs = cross_slabs(node, ray, hit.t);
+      const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
+      const unsigned bits = mask_bits(di, slabs.enters);
+      if (bits != 0) {
+        const int first = __builtin_ctz(bits);
+        if ((bits & (bits - 1)) == 0) {
+          current = static_cast<std::uint32_t>(children[first]);
+          continue;
+        }
+        const auto count = static_cast<std::size_t>(__builtin_popcount(bits));
+        push_children(di, make_keys(slabs.entry), slabs.enters, children, count, keys + top + 1,
+                      refs + top + 1);
+        top += static_cast<int>(count) - 1;
+        current = static_cast<std::uint32_t>(refs[top + 1]);
+        continue;
+      }
+    } else {
+      if (current == kBottom) return;
+      if (visit_leaf(pool, current, ray, hit)) limit_key = std::bit_cast<std::int32_t>(hit.t) | 7;
+    }
+    while (keys[top] > limit_key) --top;
+    current = static_cast<std::uint32_t>(refs[top]);
+    --top;
+  }
+}
+
+HWY_INLINE bool any_hit_one(const char* pool, const KernelRay& ray, float limit) {
+  const DIW di;
+  HWY_ALIGN std::uint32_t refs[kStackSize];
+  refs[0] = kBottom;
+  int top = 0;
+  std::uint32_t current = 0;
+  while (true) {
+    if ((current & 3) == 0) {
+      const char* node = node_at(pool, current);
+      const Slabs slabs = cross_slabs(node, ray, limit);
+      const auto* children = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes);
+      unsigned bits = mask_bits(di, slabs.enters);
+      if (bits != 0) {
+        current = children[__builtin_ctz(bits)];
+        for (bits &= bits - 1; bits; bits &= bits - 1) refs[++top] = children[__builtin_ctz(bits)];
+        continue;
+      }
+    } else {
+      if (current == kBottom) return false;
+      const TriangleBlock* block = block_at(pool, current);
+      for (std::uint32_t left = current >> 2 & 3; left > 0; --left, ++block) {
+        const Crossed crossed = test_edges(*block, ray);
+        HWY_ALIGN float ts[kBlockWidth];
+        if (crossed.maybe && test_planes(*block, ray, crossed, limit, ts)) return true;
+      }
+    }
+    current = refs[top--];
+  }
+}
+
+HWY_INLINE void all_hits_one(const char* pool, const KernelRay& ray, float limit,
+                             std::vector<TriangleHit>& hits) {
+  const DIW di;
+  HWY_ALIGN std::uint32_t refs[kStackSize];
+  refs[0] = kBottom;
+  int top = 0;
+  for (std::uint32_t current = 0; current != kBottom; current = refs[top--]) {
+    if ((current & 3) == 0) {
+      const char* node = node_at(pool, current);
+      const Slabs slabs = cross_slabs(node, ray, limit);
+      const auto* children = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes);
+      for (std::uint32_t bits = mask_bits(di, slabs.enters); bits; bits &= bits - 1)
+        refs[++top] = children[__builtin_ctz(bits)];
+      continue;
+    }
+    const TriangleBlock* block = block_at(pool, current);
+    for (std::uint32_t left = current >> 2 & 3; left > 0; --left, ++block) {
+      const Crossed crossed = test_edges(*block, ray);
+      if (crossed.maybe == 0) continue;
+      HWY_ALIGN float ts[kBlockWidth];
+      for (std::uint32_t lanes = test_planes(*block, ray, crossed, limit, ts); lanes; lanes &= lanes - 1) {
+        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
+        if (lane > 0 && block->key[lane] == block->key[0]) continue;  // it only fills the block
+        hits.push_back({ts[lane], block->key[lane],
+                        static_cast<std::uint32_t>((reinterpret_cast<const char*>(block) - pool) / 32),
+                        lane});
+      }
+    }
+  }
+}
+
+}  // namespace boxwood::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

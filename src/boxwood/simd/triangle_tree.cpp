@@ -1,0 +1,74 @@
+#include "boxwood/simd/triangle_tree.h"
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+
+namespace boxwood::simd {
+namespace {
+
+/// A walk leaves at most all children but one behind at each level.
+template <int W>
+int find_max_stack(const WideBvh<W>& wide) {
+  std::vector<int> left_above(wide.nodes.size(), 0);  // children stand behind their parents
+  int most = 0;
+  for (std::size_t i = 0; i < wide.nodes.size(); ++i) {
+    int children = 0;
+    for (const ChildRef child : wide.nodes[i].children) children += !child.is_empty();
+    const int left = left_above[i] + children;
+    most = std::max(most, left);
+    for (const ChildRef child : wide.nodes[i].children)
+      if (!child.is_leaf()) left_above[child.index()] = left - 1;
+  }
+  return most;
+}
+
+}  // namespace
+
+template <int W>
+TriangleTree::TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> triangles,
+                           std::span<const std::uint32_t> keys, Executor& executor)
+    : node_count_(wide.nodes.size()), block_count_(wide.block_count()), width_(W), box_(wide.box) {
+  if (wide.is_empty()) return;
+  blocks_at_ = node_count_ * sizeof(WideNode<W>);
+  const std::size_t size = blocks_at_ + block_count_ * sizeof(TriangleBlock);
+  if (size >= kUnit << 28)
+    throw std::length_error("the tree and its triangles need more than 8 GB, which 28 bits cannot address");
+  pool_ = HugeBuffer(size);
+  is_ordinary_ = max_component(abs(box_.lower)) <= 0x1p36f && max_component(abs(box_.upper)) <= 0x1p36f;
+  max_stack_ = find_max_stack(wide);
+
+  // Copy the nodes, with references in units.
+  constexpr std::size_t kGrain = 1 << 10;
+  const auto to_units = [&](ChildRef ref) {
+    if (ref.is_empty()) return ChildRef{};
+    const std::size_t offset =
+        ref.is_leaf() ? blocks_at_ + ref.index() * sizeof(TriangleBlock) : ref.index() * sizeof(WideNode<W>);
+    return ChildRef{static_cast<std::uint32_t>(offset / kUnit) << 4 | (ref.bits & 15)};
+  };
+  auto* nodes = reinterpret_cast<WideNode<W>*>(pool_.data());
+  parallel_for(executor, 0, node_count_, kGrain, [&](std::size_t i) {
+    WideNode<W>* node = new (nodes + i) WideNode<W>(wide.nodes[i]);
+    for (ChildRef& child : node->children) child = to_units(child);
+  });
+
+  // Fetch the triangles.
+  auto* blocks = reinterpret_cast<TriangleBlock*>(pool_.data() + blocks_at_);
+  parallel_for(executor, 0, block_count_, kGrain, [&](std::size_t i) {
+    TriangleBlock& block = *new (blocks + i) TriangleBlock;
+    for (int lane = 0; lane < kBlockWidth; ++lane) {
+      const PrimId id = wide.slots[i * kBlockWidth + std::size_t(lane)];
+      const Triangle& t = triangles[id.value];
+      const float v[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
+      for (int k = 0; k < 9; ++k) block.v[k / 3][k % 3][lane] = v[k];
+      block.key[lane] = keys[id.value];
+    }
+  });
+}
+
+template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
+                                    std::span<const std::uint32_t>, Executor&);
+template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
+                                    std::span<const std::uint32_t>, Executor&);
+
+}  // namespace boxwood::simd

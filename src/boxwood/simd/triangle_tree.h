@@ -1,0 +1,82 @@
+// triangle_tree.h: what do the kernels walk?
+//
+// A wide tree (tree/wide.h) and its triangles, in one pool of memory: first the nodes, then the blocks. A
+// reference counts in units of 32 bytes, so the address of what it names is two shifts away, and a reference
+// to a node is half of its offset. A block holds four triangles coordinate by coordinate, so that one vector
+// is the same coordinate of all four.
+#pragma once
+
+#include <span>
+
+#include "boxwood/core/parallel.h"
+#include "boxwood/shape/triangle.h"
+#include "boxwood/simd/huge_buffer.h"
+#include "boxwood/tree/wide.h"
+
+namespace boxwood::simd {
+
+struct alignas(32) TriangleBlock {
+  float v[3][3][kBlockWidth];      ///< Vertex, axis, lane.
+  std::uint32_t key[kBlockWidth];  ///< The caller's name of the triangle; equal t goes to the smaller key.
+
+  Triangle triangle(std::uint32_t lane) const {
+    const auto at = [&](int k) { return Vec3{v[k][0][lane], v[k][1][lane], v[k][2][lane]}; };
+    return {at(0), at(1), at(2)};
+  }
+};
+static_assert(sizeof(TriangleBlock) == 160);
+
+class TriangleTree {
+ public:
+  static constexpr std::size_t kUnit = 32;
+
+  TriangleTree() = default;
+
+  /// Packs `wide`; its slots pick the triangles. The executor shows in the time only. Throws
+  /// std::length_error when the pool would be larger than 8 GB.
+  template <int W>
+  TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> triangles,
+               std::span<const std::uint32_t> keys, Executor& executor);
+
+  bool is_empty() const { return pool_.size() == 0; }
+  /// Whether no float of a kernel can overflow among these triangles and ordinary rays.
+  bool is_ordinary() const { return is_ordinary_; }
+  /// The most children that a walk ever leaves behind for later.
+  int max_stack() const { return max_stack_; }
+  int width() const { return width_; }
+  const Box3& box() const { return box_; }
+  std::size_t node_count() const { return node_count_; }
+  std::size_t block_count() const { return block_count_; }
+  std::size_t size_bytes() const { return pool_.size(); }
+
+  const char* pool() const { return pool_.data(); }
+  /// The bytes behind a reference of the pool.
+  const char* at(ChildRef ref) const { return pool_.data() + std::size_t(ref.index()) * kUnit; }
+  /// The block that a hit names.
+  const TriangleBlock& block_at(std::uint32_t units) const {
+    return *reinterpret_cast<const TriangleBlock*>(pool_.data() + units * kUnit);
+  }
+  /// All blocks, one behind the other.
+  std::span<const TriangleBlock> blocks() const {
+    return {reinterpret_cast<const TriangleBlock*>(pool_.data() + blocks_at_), block_count_};
+  }
+  /// The nodes of a tree with W = width() children; references count in units.
+  template <int W>
+  std::span<const WideNode<W>> nodes() const {
+    return {reinterpret_cast<const WideNode<W>*>(pool_.data()), node_count_};
+  }
+
+ private:
+  HugeBuffer pool_;
+  std::size_t blocks_at_ = 0, node_count_ = 0, block_count_ = 0;
+  int width_ = 8, max_stack_ = 0;
+  bool is_ordinary_ = true;
+  Box3 box_;
+};
+
+extern template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
+                                           std::span<const std::uint32_t>, Executor&);
+extern template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
+                                           std::span<const std::uint32_t>, Executor&);
+
+}  // namespace boxwood::simd

@@ -1,0 +1,81 @@
+// wide.h: how does a tree with four or eight children a node lie in memory?
+//
+// A node holds rows of planes, so that one vector is the same plane of all children, and one reference for
+// each child. Eight children take 256 bytes, four cache lines; four take 128. Leaves are runs of blocks of
+// kBlockWidth primitives, which a kernel tests together; a block that is not full repeats its first
+// primitive. Data only: collapse (collapse.h) makes it from a binary tree, validate says the first broken
+// invariant:
+//
+//  1. nodes is empty when there are no primitives; otherwise node 0 is the root.
+//  2. A child is an interior node behind its parent in the array, a run of 1 to kMaxLeafBlocks blocks, or
+//  empty.
+//  3. An empty child has the empty box, so that no ray enters it.
+//  4. The box of a child holds what is below it; each block belongs to one leaf, and each primitive stands in
+//     one block (in a tree with spatial splits: at least one).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "boxwood/core/box.h"
+#include "boxwood/core/id.h"
+
+namespace boxwood {
+
+inline constexpr int kBlockWidth = 4;     ///< Primitives of a block.
+inline constexpr int kMaxLeafBlocks = 3;  ///< Blocks of a leaf.
+
+/// Where a child leads: 28 bits of index, two for the number of blocks, and two that say what it is: 0 a
+/// node, 1 a leaf (without blocks: an empty child). Kernels use the other two values for themselves.
+struct ChildRef {
+  std::uint32_t bits = 1;
+
+  static constexpr ChildRef node(std::uint32_t node_index) { return {node_index << 4}; }
+  static constexpr ChildRef leaf(std::uint32_t block_index, std::uint32_t blocks) {
+    return {block_index << 4 | blocks << 2 | 1};
+  }
+  constexpr bool is_leaf() const { return bits & 1; }
+  constexpr bool is_empty() const { return (bits & 15) == 1; }
+  constexpr std::uint32_t index() const { return bits >> 4; }
+  constexpr std::uint32_t blocks() const { return bits >> 2 & 3; }
+  friend constexpr bool operator==(const ChildRef&, const ChildRef&) = default;
+};
+
+template <int W>
+struct alignas(64) WideNode {
+  float planes[3][2][W];  ///< Axis; lower, upper; child.
+  ChildRef children[W];
+
+  /// All children empty.
+  WideNode() {
+    for (int c = 0; c < W; ++c) set(c, Box3{}, ChildRef{});
+  }
+  Box3 box(int child) const {
+    Box3 box;
+    for (int k = 0; k < 3; ++k) {
+      box.lower[k] = planes[k][0][child];
+      box.upper[k] = planes[k][1][child];
+    }
+    return box;
+  }
+  void set(int child, const Box3& box, ChildRef ref) {
+    for (int k = 0; k < 3; ++k) {
+      planes[k][0][child] = box.lower[k];
+      planes[k][1][child] = box.upper[k];
+    }
+    children[child] = ref;
+  }
+};
+static_assert(sizeof(WideNode<8>) == 256 && sizeof(WideNode<4>) == 128);
+
+template <int W>
+struct WideBvh {
+  std::vector<WideNode<W>> nodes;
+  std::vector<PrimId> slots;  ///< kBlockWidth for each block.
+  Box3 box;
+
+  bool is_empty() const { return nodes.empty(); }
+  std::size_t block_count() const { return slots.size() / kBlockWidth; }
+};
+
+}  // namespace boxwood
