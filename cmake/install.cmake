@@ -23,7 +23,8 @@ else()
   set(not_installed REGEX "/(io|render)$" EXCLUDE)
 endif()
 
-install(DIRECTORY src/boxwood DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" ${not_installed})
+install(DIRECTORY src/boxwood DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
+  PATTERN "*-inl.h" EXCLUDE ${not_installed})
 configure_package_config_file(cmake/boxwoodConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/boxwoodConfig.cmake
   INSTALL_DESTINATION ${BOXWOOD_PACKAGE_DIR})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/boxwoodConfigVersion.cmake COMPATIBILITY SameMinorVersion)
