@@ -22,12 +22,13 @@ using test::BoxSet;
 using test::soup_boxes;
 using test::terrain_boxes;
 
-constexpr Method kMethods[] = {Method::longest_axis, Method::binned_sah, Method::sweep_sah};
+constexpr Method kMethods[] = {Method::longest_axis, Method::binned_sah, Method::sweep_sah, Method::ploc};
 
 std::string name(Method method) {
   return method == Method::longest_axis ? "longest_axis"
          : method == Method::binned_sah ? "binned_sah"
-                                        : "sweep_sah";
+         : method == Method::sweep_sah  ? "sweep_sah"
+                                        : "ploc";
 }
 
 /// Equal in every bit, which is more than ==: that takes -0 for +0.
@@ -275,6 +276,21 @@ TEST(Build, TheHeuristicPays) {
     EXPECT_LT(binned, longest * 0.95) << set.name;
     EXPECT_LT(sweep, longest * 0.95) << set.name;
   }
+}
+
+TEST(Build, ClusteringIsWorthATree) {
+  for (const BoxSet& set : {BoxSet{"soup", soup_boxes(50'000)}, BoxSet{"terrain", terrain_boxes(150)},
+                            BoxSet{"long soup", soup_boxes(50'000, 3, 0.5f)}}) {
+    const double sweep = sah_cost(build(set.boxes, {.method = Method::sweep_sah}));
+    EXPECT_LE(sah_cost(build(set.boxes, {.method = Method::ploc})), sweep * 1.2) << set.name;
+  }
+}
+
+TEST(Build, ClusteringPairsUpARow) {
+  // Equal boxes at equal distances: if each chose the one before it, one pair a round would merge.
+  std::vector<Box3> boxes;
+  for (int i = 0; i < 4096; ++i) boxes.push_back({{float(i), 0, 0}, {float(i) + 0.5f, 1, 1}});
+  EXPECT_LE(tree_shape(build(boxes, {.method = Method::ploc, .leaf_size = 1})).depth, 16);
 }
 
 TEST(Build, BoxesOfShapes) {

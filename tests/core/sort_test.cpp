@@ -127,5 +127,21 @@ TEST(SortableBits, OrderLikeTheFloats) {
   EXPECT_EQ(sortable_bits(-0.0f), sortable_bits(0.0f));
 }
 
+TEST(RadixSort, FromABitOnKeepsWhatStandsBelow) {
+  Random random(11);
+  for (const std::size_t count : {0, 1, 1000, 200'000}) {
+    std::vector<std::uint64_t> keys(count);
+    for (std::size_t i = 0; i < count; ++i) keys[i] = std::uint64_t(random.below(1000)) << 40 | (count - i);
+    std::vector<std::uint64_t> expected = keys;
+    std::stable_sort(expected.begin(), expected.end(),
+                     [](std::uint64_t a, std::uint64_t b) { return a >> 32 < b >> 32; });
+    for (Executor* executor : {&serial_executor(), &default_executor()}) {
+      std::vector<std::uint64_t> found = keys;
+      radix_sort_from_bit(32, found, *executor);
+      EXPECT_EQ(found, expected);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace boxwood

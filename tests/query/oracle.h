@@ -34,7 +34,7 @@ inline std::vector<NamedTree> every_tree(const std::vector<Box3>& boxes) {
   std::vector<NamedTree> trees;
   for (const auto& [method, name] :
        {std::pair{Method::longest_axis, "longest_axis"}, std::pair{Method::binned_sah, "binned_sah"},
-        std::pair{Method::sweep_sah, "sweep_sah"}})
+        std::pair{Method::sweep_sah, "sweep_sah"}, std::pair{Method::ploc, "ploc"}})
     for (int leaf_size : {1, 4, 13}) {
       BuildOptions options;
       options.method = method;

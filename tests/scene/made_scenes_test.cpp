@@ -33,7 +33,7 @@ class MadeScenes : public ::testing::TestWithParam<const char*> {};
 TEST_P(MadeScenes, AnswerAsIfTheyHadNoTrees) {
   const SceneDesc desc = gallery::make(GetParam());
   std::vector<Scene> scenes;
-  for (const Method method : {Method::longest_axis, Method::binned_sah, Method::sweep_sah}) {
+  for (const Method method : {Method::longest_axis, Method::binned_sah, Method::sweep_sah, Method::ploc}) {
     BuildOptions options;
     options.method = method;
     scenes.emplace_back(desc, options);

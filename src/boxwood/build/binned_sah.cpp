@@ -15,8 +15,8 @@ constexpr std::size_t kParallelSize = 1 << 16, kBlock = 1 << 14;
 /// again, because a range that is only guessed leaves too many of a few bins empty.
 constexpr std::uint32_t kFew = 4, kLookAgain = 64;
 
-/// Larger ranges are worked on as groups of primitives.
-constexpr std::uint32_t kTakeApart = 256;
+/// Larger ranges are worked on as groups of at most kGroupSize primitives.
+constexpr std::uint32_t kTakeApart = 256, kGroupSize = 8;
 
 /// Adds all items to `all` with `add(T&, items)`; `all` is empty before. `merge(T&, const T&)` adds two.
 template <class T, class Add, class Merge>
@@ -60,23 +60,21 @@ int bins_for(std::uint32_t count, int most) {
 
 }  // namespace
 
-BinnedSahSplitter::BinnedSahSplitter(std::span<Item> items, const BuildOptions& options, Executor& executor)
-    : items_(items),
-      room_(items.size()),
+BinnedSahSplitter::BinnedSahSplitter(const Items& items, const BuildOptions& options, Executor& executor)
+    : items_(items.full.data(), items.full.size()),
+      room_(items.full.size()),
       leaf_size_(static_cast<std::uint32_t>(options.leaf_size)),
       max_bins_(options.bins),
       cost_{options.traversal_cost, static_cast<std::uint32_t>(options.block_size)},
       executor_(executor) {
-  Bounds bounds;
-  reduce(bounds, items_, executor_, kernels_.bound,
-         [](Bounds& all, const Bounds& some) { all.extend(some); });
-  if (items.size() <= kTakeApart) {
+  const Bounds& bounds = items.bounds;
+  if (items_.size() <= kTakeApart) {
     root_ = {items_, room_.data(), false, bounds.box, bounds.centers};
   } else {
-    order_ = in_morton_order(items, bounds.centers, executor_);
-    groups_ = make_groups(order_, executor_);
-    group_room_ = RawArray<Group>(groups_.size());
-    root_ = {{groups_.data(), groups_.size()}, group_room_.data(), true, bounds.box, bounds.centers};
+    order_ = in_morton_order(items_, bounds.centers, kGroupSize, Keep::items, executor_);
+    group_room_ = RawArray<Group>(order_.groups.size());
+    root_ = {
+        {order_.groups.data(), order_.groups.size()}, group_room_.data(), true, bounds.box, bounds.centers};
   }
 }
 

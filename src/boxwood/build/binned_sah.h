@@ -26,7 +26,7 @@ class BinnedSahSplitter {
     Reach centers;  ///< Twice the centers lie about here.
   };
 
-  BinnedSahSplitter(std::span<Item> items, const BuildOptions& options, Executor& executor);
+  BinnedSahSplitter(const Items& items, const BuildOptions& options, Executor& executor);
   Share root() const { return root_; }
   Step<Share> step(Range range, Plan plan, const Share& share);
   void write_leaf(Range range, const Share& share, std::span<PrimId> out) const;
@@ -44,7 +44,7 @@ class BinnedSahSplitter {
   std::span<Item> items_;
   RawArray<Item> room_;
   MortonOrder order_;
-  RawArray<Group> groups_, group_room_;
+  RawArray<Group> group_room_;
   Share root_;
   const std::uint32_t leaf_size_;
   const int max_bins_;

@@ -57,15 +57,6 @@ struct Cut {
   Reach left, right;
 };
 
-/// The union of boxes, and the range of twice their centers.
-struct Bounds {
-  Reach box, centers;
-  void extend(const Bounds& other) {
-    box.extend(other.box);
-    centers.extend(other.centers);
-  }
-};
-
 /// The loops, for the CPU that the program runs on.
 struct BinKernels {
   /// Extends `all` by the items.

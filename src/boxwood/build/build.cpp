@@ -6,6 +6,7 @@
 
 #include "boxwood/build/binned_sah.h"
 #include "boxwood/build/longest_axis.h"
+#include "boxwood/build/ploc.h"
 #include "boxwood/build/sweep_sah.h"
 #include "boxwood/build/top_down.h"
 
@@ -50,12 +51,14 @@ Bvh build(std::span<const Box3> boxes, const BuildOptions& options) {
     case Method::longest_axis:
       return grow(LongestAxisSplitter(full, options), false);
     case Method::binned_sah:
-      return grow(BinnedSahSplitter(full, options, executor), true);
+      return grow(BinnedSahSplitter(items, options, executor), true);
     case Method::sweep_sah:
       return grow(SweepSahSplitter(full, options, executor), true);
+    case Method::ploc:
+      return grow(PlocSplitter(items, options, executor, meter), true);
   }
   throw std::invalid_argument("build: method is " + std::to_string(static_cast<int>(options.method)) +
-                              ", expected longest_axis, binned_sah or sweep_sah");
+                              ", expected longest_axis, binned_sah, sweep_sah or ploc");
 }
 
 }  // namespace boxwood

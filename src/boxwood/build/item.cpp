@@ -1,14 +1,15 @@
 #include "boxwood/build/item.h"
 
 #include <algorithm>
-#include <atomic>
 #include <stdexcept>
 #include <string>
+
+#include "boxwood/build/bins.h"
 
 namespace boxwood {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 14;
+constexpr std::size_t kBlock = 1 << 13;
 
 [[noreturn]] void refuse(std::span<const Box3> boxes, std::size_t i) {
   const auto text = [](Vec3 p) {
@@ -24,30 +25,39 @@ constexpr std::size_t kGrain = 1 << 14;
 Items collect_items(std::span<const Box3> boxes, Executor& executor) {
   Items items;
   items.full = RawArray<Item>(boxes.size());
-  std::atomic<std::size_t> first_bad{boxes.size()};
-  std::atomic<bool> any_empty{false};
+  const std::size_t blocks = (boxes.size() + kBlock - 1) / kBlock;
+  std::vector<Bounds> bounds(blocks);
+  std::vector<std::uint8_t> is_odd(blocks, 0);
 
-  // Copy every box; remember the smallest number that must be refused.
-  parallel_for(executor, 0, boxes.size(), kGrain, [&](std::size_t i) {
-    const Box3& box = boxes[i];
-    const bool is_finite_box = is_finite(box.lower) && is_finite(box.upper);
-    if (!is_finite_box && box != Box3{}) {
-      std::size_t seen = first_bad.load();
-      while (i < seen && !first_bad.compare_exchange_weak(seen, i)) {
-      }
+  // Copy every box. A sum of zeros is 0, unless something that is not finite was multiplied by 0.
+  parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
+    const std::size_t begin = block * kBlock, end = std::min(boxes.size(), begin + kBlock);
+    bool are_plain = true;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [lower, upper] = boxes[i];
+      const float zero =
+          (lower.x * 0 + lower.y * 0) + (lower.z * 0 + upper.x * 0) + (upper.y * 0 + upper.z * 0);
+      are_plain &= (zero == 0) & (lower.x <= upper.x) & (lower.y <= upper.y) & (lower.z <= upper.z);
+      items.full[i] = Item(boxes[i], PrimId(i));
     }
-    if (box.is_empty()) any_empty.store(true, std::memory_order_relaxed);
-    items.full[i] = Item(box, PrimId(i));
+    is_odd[block] = !are_plain;
+    if (are_plain) bin_kernels().bound(bounds[block], {items.full.data() + begin, end - begin});
   });
-  if (first_bad < boxes.size()) refuse(boxes, first_bad);
 
-  // Take the empty ones out.
-  if (any_empty) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      if (boxes[i].is_empty()) items.empty_boxes.push_back(PrimId(i));
-    const auto end = std::remove_if(items.full.begin(), items.full.end(),
-                                    [&](const Item& item) { return boxes[item.prim_id.value].is_empty(); });
-    items.full.shrink(static_cast<std::size_t>(end - items.full.begin()));
+  // Take the empty ones out, and refuse the first that is neither full nor empty.
+  if (std::find(is_odd.begin(), is_odd.end(), 1) != is_odd.end()) {
+    std::size_t full = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (!(is_finite(boxes[i].lower) && is_finite(boxes[i].upper)) && boxes[i] != Box3{}) refuse(boxes, i);
+      if (boxes[i].is_empty())
+        items.empty_boxes.push_back(PrimId(i));
+      else
+        items.full[full++] = items.full[i];
+    }
+    items.full.shrink(full);
+    bin_kernels().bound(items.bounds, {items.full.data(), full});
+  } else {
+    for (const Bounds& some : bounds) items.bounds.extend(some);
   }
   return items;
 }

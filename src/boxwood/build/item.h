@@ -90,10 +90,20 @@ struct ByCenter {
   }
 };
 
+/// The union of boxes, and the range of twice their centers.
+struct Bounds {
+  Reach box, centers;
+  void extend(const Bounds& other) {
+    box.extend(other.box);
+    centers.extend(other.centers);
+  }
+};
+
 /// What there is to build over.
 struct Items {
   RawArray<Item> full;              ///< Primitives with a box, in the order of their numbers.
   std::vector<PrimId> empty_boxes;  ///< Primitives that no box test will ever find.
+  Bounds bounds;                    ///< Of the full ones.
 };
 
 /// Throws std::invalid_argument, naming the first one, when a box is neither finite nor the empty box.
@@ -126,6 +136,7 @@ class Scale {
     const Lanes extent = (reach.upper + reach.minus_lower) * factor_;
     return extent * (extent.turned() + Lanes::all(0x1p-20f));
   }
+  float factor() const { return factor_.v[0]; }
   float area(const Reach& reach) const {
     const Lanes sides = side_areas(reach);
     return sides.v[0] + sides.v[1] + sides.v[2];

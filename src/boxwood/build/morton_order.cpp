@@ -2,42 +2,44 @@
 
 #include <algorithm>
 
-#include "boxwood/core/morton.h"
 #include "boxwood/core/radix_sort.h"
 
 namespace boxwood {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 14;
+/// So many items are worked on by one task at a time; groups do not reach over the borders of such blocks,
+/// whoever works on them.
+constexpr std::size_t kBlock = 1 << 13;
 
-/// How much longer a primitive may be than the shortest of its group.
+/// How much larger a primitive may be than the smallest of its group, by the sum of its sides.
 constexpr float kMaxRatio = 8;
 
-float longest_side(const Item& item) {
-  float longest = 0;
-  for (int k = 0; k < 3; ++k) longest = std::max(longest, item.upper[k] + item.minus_lower[k]);
-  return longest;
+float size_of_box(const Reach& reach) {
+  const Lanes sides = reach.upper + reach.minus_lower;
+  return sides.v[0] + sides.v[1] + sides.v[2];
 }
 
 /// Cuts one block of the order into groups, which it writes from `out` on.
 class GroupMaker {
  public:
-  GroupMaker(MortonOrder& order, Group* out)
-      : items_(order.items.data()), codes_(order.codes.data(), order.codes.size()), out_(out) {}
+  GroupMaker(const std::uint64_t* keys, Item* items, std::uint32_t first, std::uint32_t group_size,
+             Group* out)
+      : keys_(keys), items_(items), first_(first), group_size_(group_size), out_(out) {}
   std::uint32_t count() const { return count_; }
 
   void cut(std::uint32_t begin, std::uint32_t end) {
-    if (end - begin <= kGroupSize) return close(begin, end);
+    if (end - begin <= group_size_) return close(begin, end);
 
-    // Cut where the highest bit changes that is not the same in all.
-    const std::uint32_t first = codes_[begin], last = codes_[end - 1];
+    // Cut where the highest bit changes that is not the same in all codes.
+    const auto code = [&](std::uint32_t i) { return static_cast<std::uint32_t>(keys_[i] >> 32); };
+    const std::uint32_t differing = code(begin) ^ code(end - 1);
     std::uint32_t middle = begin + (end - begin) / 2;
-    if (first != last) {
-      const std::uint32_t bit = std::bit_floor(first ^ last);
+    if (differing != 0) {
+      const std::uint64_t bit = std::uint64_t(std::bit_floor(differing)) << 32;
       middle = static_cast<std::uint32_t>(
-          std::partition_point(codes_.begin() + begin, codes_.begin() + end,
-                               [&](std::uint32_t code) { return (code & bit) == 0; }) -
-          codes_.begin());
+          std::partition_point(keys_ + begin, keys_ + end,
+                               [&](std::uint64_t key) { return (key & bit) == 0; }) -
+          keys_);
     }
     cut(begin, middle);
     cut(middle, end);
@@ -45,73 +47,103 @@ class GroupMaker {
 
  private:
   void close(std::uint32_t begin, std::uint32_t end) {
-    float shortest = kInfinity;
-    for (std::uint32_t i = begin; i < end; ++i) shortest = std::min(shortest, longest_side(items_[i]));
-    const auto large = std::stable_partition(items_ + begin, items_ + end, [&](const Item& item) {
-      return longest_side(item) <= kMaxRatio * shortest;
-    });
-    const auto first_large = static_cast<std::uint32_t>(large - items_);
-    put(begin, first_large);
-    for (std::uint32_t i = first_large; i < end; ++i) put(i, i + 1);
-  }
-  void put(std::uint32_t begin, std::uint32_t end) {
     Reach all;
-    for (std::uint32_t i = begin; i < end; ++i) all.extend(items_[i].reach());
-    out_[count_++] = Group(all, PrimId(begin), std::bit_cast<float>(end - begin));
+    float smallest = kInfinity, largest = 0;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const Reach reach = items_[i].reach();
+      all.extend(reach);
+      const float size = size_of_box(reach);
+      smallest = std::min(smallest, size);
+      largest = std::max(largest, size);
+    }
+    if (largest <= kMaxRatio * smallest) return put(all, begin, end);
+
+    // The large ones go behind the others, each for itself.
+    const auto first_large = std::stable_partition(items_ + begin, items_ + end, [&](const Item& item) {
+      return size_of_box(item.reach()) <= kMaxRatio * smallest;
+    });
+    const auto split = static_cast<std::uint32_t>(first_large - items_);
+    all = {};
+    for (std::uint32_t i = begin; i < split; ++i) all.extend(items_[i].reach());
+    put(all, begin, split);
+    for (std::uint32_t i = split; i < end; ++i) put(items_[i].reach(), i, i + 1);
+  }
+  void put(const Reach& all, std::uint32_t begin, std::uint32_t end) {
+    if (begin < end) out_[count_++] = Group(all, PrimId(first_ + begin), std::bit_cast<float>(end - begin));
   }
 
+  const std::uint64_t* keys_;
   Item* items_;
-  std::span<const std::uint32_t> codes_;
+  const std::uint32_t first_, group_size_;
   Group* out_;
   std::uint32_t count_ = 0;
 };
 
-}  // namespace
-
-MortonOrder in_morton_order(std::span<const Item> items, const Reach& centers, Executor& executor) {
-  const std::size_t count = items.size();
-  MortonOrder order{RawArray<Item>(count), RawArray<std::uint32_t>(count)};
-  const RawArray<std::uint32_t> places(count);
-
-  // Ten bits an axis. Cells are cubes: what is flat has its bits on the other axes.
-  Lanes lower = Lanes::all(0) - centers.minus_lower;
-  const Lanes extent = centers.upper + centers.minus_lower;
-  const float longest = std::max(extent.v[0], std::max(extent.v[1], extent.v[2]));
-  const float scale = longest > 0x1p-110f && longest < kInfinity ? 1024 / longest : 0;
-  executor.for_range(0, count, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Lanes place = (twice_center(items[i].reach()) - lower) * Lanes::all(scale);
-      const auto cell = min(max(place, Lanes::all(0)), Lanes::all(1023)).whole();
-      order.codes[i] = spread_bits_by_3(std::uint32_t(cell[0])) |
-                       spread_bits_by_3(std::uint32_t(cell[1])) << 1 |
-                       spread_bits_by_3(std::uint32_t(cell[2])) << 2;
-      places[i] = static_cast<std::uint32_t>(i);
-    }
-  });
-  radix_sort({order.codes.data(), count}, {places.data(), count}, executor);
-  parallel_for(executor, 0, count, kBlock, [&](std::size_t i) { order.items[i] = items[places[i]]; });
-  return order;
+/// The bits of each lane at every third place (core/morton.h), for three axes at once.
+std::uint32_t interleave(std::array<std::int32_t, 4> cell) {
+  std::array<std::uint32_t, 4> x;
+  for (int k = 0; k < 4; ++k) x[k] = std::uint32_t(cell[k]);
+  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 16) & 0x030000ff;
+  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 8) & 0x0300f00f;
+  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 4) & 0x030c30c3;
+  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 2) & 0x09249249;
+  return x[0] | x[1] << 1 | x[2] << 2;
 }
 
-RawArray<Group> make_groups(MortonOrder& order, Executor& executor) {
-  const std::size_t count = order.items.size(), blocks = (count + kBlock - 1) / kBlock;
-  RawArray<Group> sparse(count);
+/// The code in the upper half, the place in `items` in the lower; sorted.
+RawArray<std::uint64_t> sorted_keys(std::span<const Item> items, const Reach& centers, Executor& executor) {
+  RawArray<std::uint64_t> keys(items.size());
+
+  // Ten bits an axis. Cells are cubes: what is flat has its bits on the other axes.
+  const Lanes lower = Lanes::all(0) - centers.minus_lower;
+  const Lanes extent = centers.upper + centers.minus_lower;
+  const float longest = std::max(extent.v[0], std::max(extent.v[1], extent.v[2]));
+  const Lanes scale = Lanes::all(longest > 0x1p-110f && longest < kInfinity ? 1024 / longest : 0);
+  parallel_for(executor, 0, items.size(), kBlock, [&](std::size_t i) {
+    const Lanes place = (twice_center(items[i].reach()) - lower) * scale;
+    const auto cell = min(max(place, Lanes::all(0)), Lanes::all(1023)).whole();
+    keys[i] = std::uint64_t(interleave(cell)) << 32 | i;
+  });
+  radix_sort_from_bit(32, {keys.data(), keys.size()}, executor);
+  return keys;
+}
+
+}  // namespace
+
+MortonOrder in_morton_order(std::span<const Item> items, const Reach& centers, std::uint32_t group_size,
+                            Keep keep, Executor& executor) {
+  const RawArray<std::uint64_t> keys = sorted_keys(items, centers, executor);
+  const std::size_t count = items.size(), blocks = (count + kBlock - 1) / kBlock;
+  MortonOrder order;
+  if (keep == Keep::items)
+    order.items = RawArray<Item>(count);
+  else
+    order.ids = RawArray<PrimId>(count);
+
+  // Fetch the items of each block, and cut it into groups.
+  const RawArray<Group> sparse(count);
   std::vector<std::size_t> before(blocks + 1, 0);
   parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    GroupMaker maker(order, sparse.data() + block * kBlock);
-    maker.cut(static_cast<std::uint32_t>(block * kBlock),
-              static_cast<std::uint32_t>(std::min(count, (block + 1) * kBlock)));
+    const std::size_t first = block * kBlock, size = std::min(kBlock, count - first);
+    RawArray<Item> own;
+    if (keep == Keep::ids) own = RawArray<Item>(size);
+    Item* fetched = keep == Keep::ids ? own.data() : order.items.data() + first;
+    for (std::size_t i = 0; i < size; ++i) fetched[i] = items[std::uint32_t(keys[first + i])];
+    GroupMaker maker(keys.data() + first, fetched, std::uint32_t(first), group_size, sparse.data() + first);
+    maker.cut(0, std::uint32_t(size));
     before[block + 1] = maker.count();
+    if (keep == Keep::ids)
+      for (std::size_t i = 0; i < size; ++i) order.ids[first + i] = fetched[i].prim_id;
   });
 
   // Move the blocks' groups together.
   for (std::size_t block = 0; block < blocks; ++block) before[block + 1] += before[block];
-  RawArray<Group> groups(before[blocks]);
+  order.groups = RawArray<Group>(before[blocks]);
   parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
     const Group* from = sparse.data() + block * kBlock;
-    std::copy(from, from + (before[block + 1] - before[block]), groups.data() + before[block]);
+    std::copy(from, from + (before[block + 1] - before[block]), order.groups.data() + before[block]);
   });
-  return groups;
+  return order;
 }
 
 }  // namespace boxwood

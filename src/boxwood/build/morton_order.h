@@ -1,7 +1,7 @@
 // morton_order.h: which primitives are neighbours?
 //
 // Primitives in the order of their centers' Morton codes (core/morton.h): neighbours in space become
-// neighbours in memory, mostly. Where a builder can do with less detail, small runs of that order stand for
+// neighbours in memory, mostly. Where a builder can do with less detail, short runs of that order stand for
 // their members.
 #pragma once
 
@@ -9,19 +9,9 @@
 
 namespace boxwood {
 
-/// `items` in the order of the Morton codes of their centers; equal codes keep their order. `codes` are
-/// theirs.
-struct MortonOrder {
-  RawArray<Item> items;
-  RawArray<std::uint32_t> codes;
-};
-/// `centers` holds twice the center of each item.
-MortonOrder in_morton_order(std::span<const Item> items, const Reach& centers, Executor& executor);
-
-/// A run of at most kGroupSize items of a Morton order that share a cell: the box of all, in the place of a
-/// primitive's number where they begin, and how many they are.
+/// Some neighbours: the box of all, in the place of a primitive's number where they begin in the order, and
+/// how many they are.
 using Group = Item;
-inline constexpr std::uint32_t kGroupSize = 8;
 inline std::uint32_t first_of(const Group& group) {
   return group.prim_id.value;
 }
@@ -29,8 +19,19 @@ inline std::uint32_t size_of(const Group& group) {
   return std::bit_cast<std::uint32_t>(group.unused);
 }
 
-/// Cuts the order into groups. A primitive that is much larger than its neighbours is a group of its own (and
-/// moves behind them), so that it does not drag them along.
-RawArray<Group> make_groups(MortonOrder& order, Executor& executor);
+/// The order, cut into groups that share a cell.
+struct MortonOrder {
+  RawArray<Item> items;  ///< Empty when only the ids were asked for.
+  RawArray<PrimId> ids;  ///< Empty when the items were asked for.
+  RawArray<Group> groups;
+};
+
+enum class Keep { items, ids };
+
+/// Brings `items` into Morton order; `centers` is the range of twice their centers. Equal codes keep their
+/// order. Groups have at most `group_size` members; a primitive that is much larger than its neighbours is a
+/// group of its own, so that it does not drag them along.
+MortonOrder in_morton_order(std::span<const Item> items, const Reach& centers, std::uint32_t group_size,
+                            Keep keep, Executor& executor);
 
 }  // namespace boxwood

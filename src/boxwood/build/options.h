@@ -10,6 +10,7 @@ enum class Method {
   longest_axis,  ///< Halve the longest axis at its middle: the textbook's, easy to follow, uneven trees.
   binned_sah,    ///< Surface area heuristic over equal bins: nearly the best tree, fast to build.
   sweep_sah,     ///< Surface area heuristic over every split of the sorted centers: the judge of the others.
+  ploc,          ///< Neighbours merged from the leaves up: the fastest.
 };
 
 /// Data; the presets are the choices that were measured.

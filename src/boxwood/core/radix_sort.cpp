@@ -21,19 +21,18 @@ std::size_t digit_of(Key key, int shift) {
   return static_cast<std::size_t>(key >> shift) & (kDigits - 1);
 }
 
-template <class Key>
-void sort_by_digits(std::span<Key> keys, std::span<std::uint32_t> values, Executor& executor) {
-  if (keys.size() != values.size())
-    throw std::invalid_argument("radix_sort: " + std::to_string(keys.size()) + " keys and " +
-                                std::to_string(values.size()) + " values, expected as many of both");
+/// By the bits [first_bit, end_bit). With kMovesValues as many values as keys, else none.
+template <bool kMovesValues, class Key>
+void sort_by_digits(std::span<Key> keys, std::span<std::uint32_t> values, int first_bit, int end_bit,
+                    Executor& executor) {
   const std::size_t n = keys.size(), blocks = (n + kBlock - 1) / kBlock;
   const auto other_keys = std::make_unique_for_overwrite<Key[]>(n);
-  const auto other_values = std::make_unique_for_overwrite<std::uint32_t[]>(n);
+  const auto other_values = std::make_unique_for_overwrite<std::uint32_t[]>(values.size());
   std::vector<Counts> counts(blocks);
   std::span<Key> from_keys = keys, to_keys{other_keys.get(), n};
-  std::span<std::uint32_t> from_values = values, to_values{other_values.get(), n};
+  std::span<std::uint32_t> from_values = values, to_values{other_values.get(), values.size()};
 
-  for (int shift = 0; shift < int(8 * sizeof(Key)); shift += kDigitBits) {
+  for (int shift = first_bit; shift < end_bit; shift += kDigitBits) {
     // Count the digits of each block.
     parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
       Counts& count = counts[block];
@@ -62,7 +61,7 @@ void sort_by_digits(std::span<Key> keys, std::span<std::uint32_t> values, Execut
       for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
         const std::size_t to = next[digit_of(from_keys[i], shift)]++;
         to_keys[to] = from_keys[i];
-        to_values[to] = from_values[i];
+        if constexpr (kMovesValues) to_values[to] = from_values[i];
       }
     });
     std::swap(from_keys, to_keys);
@@ -76,14 +75,26 @@ void sort_by_digits(std::span<Key> keys, std::span<std::uint32_t> values, Execut
   }
 }
 
+void check_sizes(std::size_t keys, std::size_t values) {
+  if (keys != values)
+    throw std::invalid_argument("radix_sort: " + std::to_string(keys) + " keys and " +
+                                std::to_string(values) + " values, expected as many of both");
+}
+
 }  // namespace
 
 void radix_sort(std::span<std::uint32_t> keys, std::span<std::uint32_t> values, Executor& executor) {
-  sort_by_digits(keys, values, executor);
+  check_sizes(keys.size(), values.size());
+  sort_by_digits<true>(keys, values, 0, 32, executor);
 }
 
 void radix_sort(std::span<std::uint64_t> keys, std::span<std::uint32_t> values, Executor& executor) {
-  sort_by_digits(keys, values, executor);
+  check_sizes(keys.size(), values.size());
+  sort_by_digits<true>(keys, values, 0, 64, executor);
+}
+
+void radix_sort_from_bit(int first_bit, std::span<std::uint64_t> keys, Executor& executor) {
+  sort_by_digits<false>(keys, {}, first_bit, 64, executor);
 }
 
 }  // namespace boxwood

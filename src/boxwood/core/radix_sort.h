@@ -21,6 +21,9 @@ namespace boxwood {
 void radix_sort(std::span<std::uint32_t> keys, std::span<std::uint32_t> values, Executor& executor);
 void radix_sort(std::span<std::uint64_t> keys, std::span<std::uint32_t> values, Executor& executor);
 
+/// Sorts `keys` by their bits from `first_bit` on; what stands in the bits below moves along. Stable.
+void radix_sort_from_bit(int first_bit, std::span<std::uint64_t> keys, Executor& executor);
+
 /// A key that orders like the float: -inf < ... < -0 = +0 < ... < +inf. Not for NaN.
 inline std::uint32_t sortable_bits(float f) {
   const auto bits = std::bit_cast<std::uint32_t>(f + 0.0f);  // -0 becomes +0

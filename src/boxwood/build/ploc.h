@@ -1,0 +1,68 @@
+// ploc.h: which two clusters belong together?
+//
+// From the leaves up: bring the primitives into Morton order, look for each cluster's nearest neighbour among
+// the few before and behind it (the one with which it has the smallest box), merge all pairs that choose each
+// other, and repeat until one is left. Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding
+// Volume Hierarchy Construction", IEEE TVCG 2018.
+//
+// Our deviations. Neighbours that are tested as one block are the first clusters. The order is cut into
+// chunks that fit the first cache; each is worked on by itself until few clusters are left, which then make
+// up the chunks of the next phase. Ties are broken as nearest.h says.
+#pragma once
+
+#include "boxwood/build/cost.h"
+#include "boxwood/build/morton_order.h"
+#include "boxwood/build/nearest.h"
+#include "boxwood/build/top_down.h"
+
+namespace boxwood {
+
+/// Makes all clusters, then hands them to the driver from the top. Cost: linear. Where they lie deeper than
+/// the driver allows, ranges are halved in the clusters' own order.
+class PlocSplitter {
+ public:
+  struct Share {
+    std::uint32_t cluster;  ///< A pair, or behind all pairs a group of the order.
+    bool is_list = false;   ///< A part of a range that was halved: see list_.
+  };
+
+  /// Throws Cancelled.
+  PlocSplitter(const Items& items, const BuildOptions& options, Executor& executor, Meter& meter);
+  Share root() const { return {root_}; }
+  Step<Share> step(Range range, Plan plan, const Share& share);
+  void write_leaf(Range range, const Share& share, std::span<PrimId> out) const;
+
+ private:
+  /// Two clusters that became one.
+  struct Pair {
+    Box3 box;
+    std::uint32_t left, right;
+    std::uint32_t count;  ///< Primitives.
+    float cost;           ///< SAH, areas as in Scale; known where a leaf could hold them.
+    bool is_leaf;         ///< Few enough, and better tested all at once.
+  };
+  class Row;
+
+  void merge_all(Executor& executor, Meter& meter);
+  void fill(Row& row, const std::uint32_t* clusters, std::uint32_t count) const;
+  void merge_chunk(Row& row, std::uint32_t enough, std::uint32_t first_pair);
+  bool is_group(std::uint32_t cluster) const { return cluster >= pairs_.size(); }
+  const Group& group(std::uint32_t cluster) const { return order_.groups[cluster - pairs_.size()]; }
+  std::uint32_t count_of(std::uint32_t cluster) const {
+    return is_group(cluster) ? size_of(group(cluster)) : pairs_[cluster].count;
+  }
+  Box3 box_of(std::span<const PrimId> ids) const;
+  /// Writes the primitives below a cluster, from left to right; returns the place behind the last.
+  PrimId* write_members(std::uint32_t cluster, PrimId* out) const;
+
+  const Items& items_;
+  const std::uint32_t leaf_size_;
+  const SahCost cost_;
+  const Scale scale_;
+  MortonOrder order_;
+  RawArray<Pair> pairs_;
+  std::uint32_t root_ = 0;
+  RawArray<PrimId> list_;  ///< By position in the tree; written where a range is halved.
+};
+
+}  // namespace boxwood
