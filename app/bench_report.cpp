@@ -53,7 +53,8 @@ std::vector<std::string> sets_of(const BenchReport& report, const std::string& s
 /// A row of columns under shared titles: the rates of each engine, then our ratios to each peer.
 std::string rate_table(const BenchReport& report, const BenchScene& scene) {
   constexpr int kSetWidth = 13, kWidth = 7, kModeWidth = 9;
-  std::string titles(kSetWidth + 4, ' '), head = fmt::format("  {:<{}}", "Mrays/s", kSetWidth + 2);
+  std::string titles(kSetWidth + 4, ' '),
+      head = fmt::format("  {:<8}{:>{}}", "Mrays/s", "threads", kSetWidth + 2 - 8);
   for (const std::string& engine : report.engines) {
     const auto modes = modes_of(report, engine);
     titles += fmt::format("{:>{}}", engine, kModeWidth * modes.size());
@@ -94,7 +95,6 @@ std::string build_table(const BenchReport& report, const BenchScene& scene) {
   }
   head.push_back("bytes/triangle");
   Table table(head);
-  std::vector<std::vector<std::string>> rows;
   for (const std::string& engine : report.engines)
     for (const BuildReport& first : report.builds) {
       if (first.scene != scene.name || first.engine != engine ||

@@ -76,7 +76,7 @@ void bench_command(const BenchArguments& arguments) {
   };
   const BenchReport report =
       bench(arguments.scenes, engines, options, open, [&](std::string_view stage, double done) {
-        bar.update(stage, done);
+        bar.update("measuring", done, stage);  // one stage, so that the forecast is of the whole
         return !is_interrupted();
       });
   bar.clear();

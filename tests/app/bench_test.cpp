@@ -203,6 +203,17 @@ TEST(Bench, StopsWhenAsked) {
   }
 }
 
+TEST(Bench, EveryEngineStopsInTheMiddleOfABuild) {
+  const TriangleMesh mesh = flatten_triangles(gallery::make("soup:100000")).mesh;
+  for (const auto& engine : everybody())
+    for (const std::string& preset : engine->presets()) {
+      const auto stop = [](std::string_view, double) { return false; };
+      EXPECT_THROW(engine->build(mesh, preset, 2, stop), Cancelled) << engine->name() << " " << preset;
+      EXPECT_GT(engine->build(mesh, preset, 2, {})->size_bytes(), mesh.indices.size())
+          << "and goes on after that";
+    }
+}
+
 TEST(Bench, TellsProgressThatNeverGoesBack) {
   double last = 0;
   BenchOptions options = small_bench();
