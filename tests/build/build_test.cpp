@@ -293,6 +293,76 @@ TEST(Build, ClusteringPairsUpARow) {
   EXPECT_LE(tree_shape(build(boxes, {.method = Method::ploc, .leaf_size = 1})).depth, 16);
 }
 
+/// The middle of what reinsertion changes: interior nodes.
+double interior_area(const Bvh& bvh) {
+  double area = 0;
+  for (const BvhNode& node : bvh.nodes)
+    if (!node.is_leaf()) area += half_area(node.box);
+  return area;
+}
+
+TEST(Reinsertion, KeepsEveryTreeLegal) {
+  for (const Method method : kMethods)
+    for (const BoxSet& set : box_sets())
+      for (const int max_depth : {5, 12, kMaxDepth}) {
+        BuildOptions o{.method = method, .max_depth = max_depth, .leaf_size = 2};
+        o.reinsertion_rounds = 6;
+        o.reinsertion_share = 1;
+        const Bvh bvh = build(set.boxes, o);
+        ASSERT_EQ(validate(bvh, set.boxes), "") << set.name << ", " << name(method);
+        ASSERT_LE(tree_shape(bvh).depth, max_depth) << set.name << ", " << name(method);
+      }
+}
+
+TEST(Reinsertion, ATreeThatWouldBeTooDeepStaysAsItWas) {
+  const std::vector<Box3> boxes = soup_boxes(4096, 3, 0.5f);
+  BuildOptions o{.method = Method::binned_sah, .max_depth = 12, .leaf_size = 1};
+  const Bvh plain = build(boxes, o);
+  ASSERT_EQ(tree_shape(plain).depth, 12);
+  o.reinsertion_rounds = 3;
+  o.reinsertion_share = 1;
+  EXPECT_TRUE(same_bits(build(boxes, o), plain));
+}
+
+TEST(Reinsertion, Pays) {
+  const std::vector<Box3> boxes = soup_boxes(20'000, 3, 0.5f);
+  BuildOptions o;
+  const double before = interior_area(build(boxes, o));
+  o.reinsertion_rounds = 4;
+  o.reinsertion_share = 0.1f;
+  EXPECT_LT(interior_area(build(boxes, o)), 0.97 * before);
+}
+
+TEST(Reinsertion, IsTheSameForAnyNumberOfThreads) {
+  const std::vector<Box3> boxes = soup_boxes(60'000, 3, 0.2f);
+  const auto two = make_executor(2), eight = make_executor(8);
+  BuildOptions o = BuildOptions::best();
+  o.executor = &serial_executor();
+  const Bvh serial = build(boxes, o);
+  for (Executor* executor : {two.get(), eight.get()}) {
+    o.executor = executor;
+    EXPECT_TRUE(same_bits(build(boxes, o), serial));
+  }
+}
+
+TEST(Reinsertion, TellsItsProgressAndStops) {
+  const std::vector<Box3> boxes = soup_boxes(50'000);
+  BuildOptions o = BuildOptions::best();
+  double last = 0;
+  int late = 0;
+  o.progress = [&](std::string_view, double done) {
+    EXPECT_GE(done, last);
+    late += last >= 0.75 && done < 1;
+    last = done;
+    return true;
+  };
+  build(boxes, o);
+  EXPECT_EQ(last, 1);
+  EXPECT_GT(late, 3);
+  o.progress = [&](std::string_view, double done) { return done < 0.9; };
+  EXPECT_THROW(build(boxes, o), Cancelled);
+}
+
 TEST(Build, BoxesOfShapes) {
   struct Ball {
     float radius;

@@ -33,6 +33,9 @@ class Meter {
     if (is_cancelled_) throw Cancelled();
   }
 
+  /// Reports that all is done, where work turned out to be less than was expected.
+  void finish() { advance(total_ - done_); }
+
  private:
   const Progress& progress_;
   const std::size_t total_;

@@ -22,6 +22,10 @@ struct BuildOptions {
   int block_size = 1;  ///< SAH: so many shapes are tested at once, at the cost of one; at least 1.
   int bins = 16;       ///< binned_sah: bins on each axis; 2 to 64.
   float traversal_cost = 1.0f;  ///< SAH: a step over two boxes costs this many shape tests.
+  /// After the build, so many times, the largest nodes are put where they cost the least: this share of all
+  /// nodes, 0 to 1 (reinsertion.h).
+  int reinsertion_rounds = 0;
+  float reinsertion_share = 0.003f;
   /// Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
   Executor* executor = nullptr;
   Progress progress;  ///< Told now and then; returning false throws Cancelled. May be empty.
