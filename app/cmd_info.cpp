@@ -7,6 +7,7 @@
 
 #include "boxwood/core/error.h"
 #include "boxwood/io/file_bytes.h"
+#include "boxwood/simd/kernels.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "numbers.h"
@@ -26,6 +27,7 @@ struct InfoArguments {
   int threads = 0;
   std::string build = "balanced";
   bool is_quiet = false;
+  bool is_about_cpu = false;
 };
 
 // ---- For people.
@@ -146,20 +148,23 @@ void print_trees(const SceneReport& report) {
   const std::size_t shown = order.size() <= kMaxTreesShown + 1 ? order.size() : kMaxTreesShown;
   std::size_t width = 4;
   for (std::size_t i = 0; i < shown; ++i)
-    width = std::max(width, std::min<std::size_t>(order[i]->name.size(), 36));
+    width = std::max(width, std::min<std::size_t>(order[i]->name.size(), 26));
 
-  fmt::print("  {:<{}}  {:>11} {:>11} {:>11}  {:>5}  {:>14}  {:>8}  {:>7}\n", "tree", width, "primitives",
-             "nodes", "leaves", "depth", "leaf size", "SAH cost", "EPO");
+  constexpr const char* kRow = "  {:<{}}  {:>10} {:>10} {:>10} {:>5}  {:>8}  {:>6}  {:>12}  {:>8} {:>7}\n";
+  fmt::print(kRow, "tree", width, "primitives", "nodes", "leaves", "depth", "children", "fill", "leaf size",
+             "SAH cost", "EPO");
   for (std::size_t i = 0; i < shown; ++i) {
     const TreeReport& tree = *order[i];
     std::string name = tree.name;
     const std::string overlap = tree.end_point_overlap ? fmt::format("{:.3f}", *tree.end_point_overlap) : "-";
     if (name.size() > width) name = name.substr(0, width - 3) + "...";
-    fmt::print("  {:<{}}  {:>11} {:>11} {:>11}  {:>5}  {:>14}  {:>8.2f}  {:>7}\n", name, width,
-               with_commas(tree.shape.primitive_count), with_commas(tree.shape.node_count),
+    const std::string fill =
+        tree.shape.block_count ? fmt::format("{:.0f} %", 100 * tree.shape.block_fill) : "-";
+    fmt::print(kRow, name, width, with_commas(tree.shape.primitive_count), with_commas(tree.shape.node_count),
                with_commas(tree.shape.leaf_count), tree.shape.depth,
+               fmt::format("{:.2f}", tree.shape.mean_children), fill,
                fmt::format("{:.2f}, max {}", tree.shape.mean_leaf_size, tree.shape.max_leaf_size),
-               tree.sah_cost, overlap);
+               fmt::format("{:.2f}", tree.sah_cost), overlap);
   }
   if (shown < order.size()) {
     std::size_t primitives = 0;
@@ -180,6 +185,8 @@ void print_costs(const SceneReport& report) {
   fmt::print("\nWhat it costs\n");
   print_line("geometry", bytes(report.geometry_bytes), a_primitive(report.geometry_bytes));
   print_line("trees", bytes(report.tree_bytes), a_primitive(report.tree_bytes));
+  print_line("together", bytes(report.geometry_bytes + report.tree_bytes),
+             a_primitive(report.geometry_bytes + report.tree_bytes));
   print_line("textures", bytes(report.texture_bytes), "");
   print_line("building", fmt::format("{:.1f} ms", report.build_ms), "");
 }
@@ -209,6 +216,9 @@ Json to_json(const TreeReport& tree) {
           {"primitives", tree.shape.primitive_count},
           {"nodes", tree.shape.node_count},
           {"leaves", tree.shape.leaf_count},
+          {"blocks", tree.shape.block_count},
+          {"mean_children", tree.shape.mean_children},
+          {"block_fill", tree.shape.block_fill},
           {"depth", tree.shape.depth},
           {"mean_leaf_depth", tree.shape.mean_leaf_depth},
           {"mean_leaf_size", tree.shape.mean_leaf_size},
@@ -248,9 +258,25 @@ Json to_json(const SceneReport& report, const SceneDesc& desc) {
   return out;
 }
 
+// ---- The processor.
+
+void print_cpu() {
+  std::string available;
+  for (const simd::Kernels* kernels : simd::available_kernels())
+    available += (available.empty() ? "" : ", ") + std::string(kernels->name);
+  available += (available.empty() ? "" : ", ") + std::string("scalar");
+  const simd::Kernels* chosen = simd::kernels();
+  fmt::print("Rays meet triangles by these kernels\n");
+  print_line("running", chosen ? chosen->name : "scalar",
+             chosen ? fmt::format("nodes of {} children", chosen->width) : "plain C++");
+  print_line("available", "", available);
+  print_line("", "", "BOXWOOD_TARGET in the environment chooses one");
+}
+
 // ---- The command.
 
 void info_command(const InfoArguments& arguments) {
+  if (arguments.is_about_cpu) return print_cpu();
   if (!arguments.json.empty()) check_writable(arguments.json);
   catch_interrupts();
   const std::unique_ptr<Executor> executor = make_executor(arguments.threads);
@@ -304,14 +330,19 @@ void add_info(CLI::App& program) {
   command->add_option("--build", arguments->build, "Care that the tree gets: fast, balanced, best")
       ->capture_default_str()
       ->check(CLI::IsMember({"fast", "balanced", "best"}).description(""));
+  command->add_flag("--cpu", arguments->is_about_cpu, "Which instructions answer rays; no scene");
   command->add_flag("--quiet", arguments->is_quiet, "No progress");
   command->footer(gallery_help() +
-                  "\nSAH cost: the expected work of a random ray, in shape tests. EPO: how much of\n"
-                  "other surfaces lies inside a node's box, in the same unit; both are better when\n"
-                  "smaller. EPO is left out (-) where nearly everything overlaps.\n"
+                  "\nTriangles stand in blocks of 4, in a tree of up to 4 or 8 children a node; fill\n"
+                  "is the share of the blocks that is used. Other trees are binary.\n"
+                  "SAH cost: the expected work of a random ray, in nodes visited (in binary trees\n"
+                  "of shapes: in shape tests). EPO: how much of other surfaces lies inside a node's\n"
+                  "box, in the same unit; both are better when smaller. EPO is left out (-) where\n"
+                  "nearly everything overlaps.\n"
                   "\nExamples:\n"
                   "  boxwood info\n"
                   "  boxwood info bunny.obj --build best\n"
+                  "  boxwood info --cpu\n"
                   "  boxwood info kitchen/scene.pbrt --json kitchen.json");
   command->callback([arguments] { info_command(*arguments); });
 }

@@ -56,23 +56,42 @@ void count_contents(const SceneDesc& desc, SceneReport& out) {
   out.warnings = desc.warnings;
 }
 
-TreeReport report_tree(std::string name, const Bvh& bvh, const std::vector<Box3>& boxes) {
-  TreeReport out{std::move(name), tree_shape(bvh), sah_cost(bvh), {}};
+template <class Tree>
+TreeReport report_tree(std::string name, const Tree& tree, const std::vector<Box3>& boxes) {
+  TreeReport out{std::move(name), tree_shape(tree), sah_cost(tree), {}};
 
   // The overlap takes a walk for each primitive, and the cost says how long a walk is.
   if (out.sah_cost * static_cast<double>(boxes.size()) < kMaxOverlapSteps)
-    out.end_point_overlap = end_point_overlap(bvh, boxes);
+    out.end_point_overlap = end_point_overlap(tree, boxes);
+  return out;
+}
+
+template <int W>
+TreeReport report_triangles(std::string name, const simd::TriangleTree& tree) {
+  // Keys count the part's triangles from 0.
+  const WideBvh<W> wide = tree.unpack<W>();
+  std::vector<Box3> boxes;
+  for (const simd::TriangleBlock& block : tree.blocks())
+    for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+      if (block.key[lane] >= boxes.size()) boxes.resize(block.key[lane] + std::size_t(1));
+      boxes[block.key[lane]] = block.triangle(lane).box();
+    }
+  TreeReport out = report_tree(std::move(name), wide, boxes);
+
+  // The slots have become blocks of triangles, which count as geometry.
+  out.shape.size_bytes = tree.node_bytes();
+  out.shape.bytes_per_primitive = double(tree.node_bytes()) / double(out.shape.primitive_count);
   return out;
 }
 
 void report_part(const std::string& name, const Part& part, const SceneDesc& desc,
                  std::vector<TreeReport>& out) {
-  // The leaves hold the primitives in tree order, so these boxes are those that each tree was built over.
-  std::vector<Box3> boxes;
-  for (const LeafTriangle& t : part.triangles) boxes.push_back(Triangle{t.a, t.b, t.c}.box());
-  if (!boxes.empty()) out.push_back(report_tree(name + ": triangles", part.triangle_bvh, boxes));
+  if (!part.triangles.is_empty())
+    out.push_back(part.triangles.width() == 4 ? report_triangles<4>(name + ": triangles", part.triangles)
+                                              : report_triangles<8>(name + ": triangles", part.triangles));
 
-  boxes.clear();
+  // The leaves hold the shapes in tree order, so these boxes are those that the tree was built over.
+  std::vector<Box3> boxes;
   for (const LeafShape& s : part.shapes)
     boxes.push_back(with_shape(desc.geometries[s.geometry_id.value], s.primitive_id,
                                [](const auto& shape) { return shape.box(); }));

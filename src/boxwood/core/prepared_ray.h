@@ -30,12 +30,22 @@ struct Interval {
   bool is_empty() const { return !(entry <= exit); }
 };
 
-/// What the triangle test reads: where the line starts, the axes in the order in which the test takes them, and
-/// the constants of the shear.
+/// What the triangle test reads: where the line starts, the axes in the order in which the test takes them,
+/// and the constants of the shear.
 struct RayShear {
   Vec3 origin;
   int axis_x = 0, axis_y = 1, axis_z = 2;
   float shear_x = 0, shear_y = 0, shear_z = 0;
+
+  RayShear() = default;
+  /// The shear alone, for whoever meets one triangle and no box. Precondition: PreparedRay would be valid.
+  RayShear(Vec3 origin, Vec3 direction) : origin(origin), axis_z(longest_axis(abs(direction))) {
+    axis_x = (axis_z + 1) % 3;
+    axis_y = (axis_z + 2) % 3;
+    shear_z = 1.0f / direction[axis_z];
+    shear_x = direction[axis_x] * shear_z;
+    shear_y = direction[axis_y] * shear_z;
+  }
 };
 
 class PreparedRay : public RayShear {
@@ -51,7 +61,8 @@ class PreparedRay : public RayShear {
 
   /// The same for a ray inside an instance, where t_min may be negative or -inf.
   PreparedRay(Vec3 origin, Vec3 direction, float t_min, float t_max, const Box3& bounds)
-      : RayShear{origin}, direction(direction), t_min(t_min), t_max(t_max) {
+      : direction(direction), t_min(t_min), t_max(t_max) {
+    this->origin = origin;
     prepare(bounds);
   }
 
@@ -102,12 +113,7 @@ class PreparedRay : public RayShear {
       t_max = -kInfinity;
       return;
     }
-    axis_z = longest_axis(abs(direction));
-    axis_x = (axis_z + 1) % 3;
-    axis_y = (axis_z + 2) % 3;
-    shear_z = 1.0f / direction[axis_z];
-    shear_x = direction[axis_x] * shear_z;
-    shear_y = direction[axis_y] * shear_z;
+    static_cast<RayShear&>(*this) = RayShear(origin, direction);
 
     constexpr float u = 0x1p-24f;
     const float reach = bounds.is_empty() ? 0.0f

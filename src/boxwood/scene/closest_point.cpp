@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "boxwood/query/distance.h"
-#include "boxwood/scene/parts.h"
+#include "boxwood/scene/walk.h"
 
 namespace boxwood {
 namespace {
@@ -53,35 +53,49 @@ struct View {
   }
 };
 
-template <class Item>
+/// What the queries for triangles and for other shapes share.
 struct PointQuery {
-  const SceneDesc& desc;
-  const std::vector<Item>& items;
   const View& view;
   Best& best;
 
   float bound(const Box3& box) const { return distance(view.to_world(box), view.point); }
   float limit() const { return best.limit; }
+  template <class S>
+  void meet(const S& shape, InstanceId own_instance, PrimId primitive) {
+    if (shape.box().is_empty()) return;
+    const Vec3 p = view.nearest(shape);
+    const float found = max(distance(p, view.point), bound(shape.box()));
+    best.consider(found, p, view.placement ? view.placement->instance_id : own_instance, primitive);
+  }
+};
+
+struct TrianglePointQuery : PointQuery {
+  const Part& part;
+  void visit(ChildRef leaf) {
+    for (const simd::TriangleBlock& block : part.triangles.blocks_of(leaf))
+      for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+        if (is_padding(block.key, static_cast<int>(lane))) continue;
+        const PartMesh& mesh = part.mesh_of(block.key[lane]);
+        meet(block.triangle(lane), mesh.instance_id, PrimId(block.key[lane] - mesh.first_key));
+      }
+  }
+};
+
+struct ShapePointQuery : PointQuery {
+  const SceneDesc& desc;
+  const Part& part;
   void visit(PrimId id) {
-    const Item& item = items[id.value];
-    const auto meet = [&](const auto& shape) {
-      if (shape.box().is_empty()) return;
-      const Vec3 p = view.nearest(shape);
-      const float found = max(distance(p, view.point), bound(shape.box()));
-      best.consider(found, p, view.placement ? view.placement->instance_id : item.instance_id,
-                    item.primitive_id);
-    };
-    if constexpr (std::is_same_v<Item, LeafTriangle>)
-      meet(Triangle{item.a, item.b, item.c});
-    else
-      with_shape(desc.geometries[item.geometry_id.value], item.primitive_id, meet);
+    const LeafShape& item = part.shapes[id.value];
+    with_shape(desc.geometries[item.geometry_id.value], item.primitive_id,
+               [&](const auto& shape) { meet(shape, item.instance_id, item.primitive_id); });
   }
 };
 
 void search(const Scene::Parts& parts, const Part& part, const View& view, Best& best) {
-  PointQuery<LeafTriangle> triangles{parts.desc, part.triangles, view, best};
-  traverse(part.triangle_bvh, triangles);
-  PointQuery<LeafShape> shapes{parts.desc, part.shapes, view, best};
+  NoStatistics none;
+  TrianglePointQuery triangles{{view, best}, part};
+  detail::traverse_triangles(part.triangles, triangles, none);
+  ShapePointQuery shapes{{view, best}, parts.desc, part};
   traverse(part.shape_bvh, shapes);
 }
 

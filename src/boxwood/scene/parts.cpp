@@ -4,28 +4,58 @@
 #include <stdexcept>
 
 #include "boxwood/build/build.h"
+#include "boxwood/build/raw_array.h"
 #include "boxwood/shape/instance.h"
+#include "boxwood/tree/collapse.h"
 
 namespace boxwood {
 namespace {
 
 constexpr std::size_t kGrain = 1 << 14;
 
-/// Adds the primitives of one geometry, as one instance shows them, to a part.
-void add_geometry(Part& part, const SceneDesc& desc, GeometryId geometry_id, InstanceId instance_id,
-                  Executor& executor) {
+/// Adds the primitives of one geometry, as one instance shows them, to a part: meshes as a whole, for
+/// build_triangles. `triangle_count` counts along.
+void add_geometry(Part& part, std::size_t& triangle_count, const SceneDesc& desc, GeometryId geometry_id,
+                  InstanceId instance_id) {
   const Geometry& geometry = desc.geometries[geometry_id.value];
   const std::size_t count = primitive_count(geometry);
-  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
-    const std::size_t first = part.triangles.size();
-    part.triangles.resize(first + count);
-    parallel_for(executor, 0, count, kGrain, [&](std::size_t i) {
-      const Triangle triangle = triangle_of(*mesh, PrimId(i));
-      part.triangles[first + i] = {triangle.a, triangle.b, triangle.c, instance_id, PrimId(i)};
-    });
+  if (std::holds_alternative<TriangleMesh>(geometry.shapes)) {
+    if (count == 0) return;
+    part.meshes.push_back({static_cast<std::uint32_t>(triangle_count), instance_id, geometry_id});
+    triangle_count += count;
+    if (triangle_count >= kMaxPrimitives)
+      throw std::invalid_argument("scene: there are " + std::to_string(triangle_count) +
+                                  " triangles or more in one space, expected fewer than " +
+                                  std::to_string(kMaxPrimitives));
   } else {
     for (std::size_t i = 0; i < count; ++i) part.shapes.push_back({geometry_id, instance_id, PrimId(i)});
   }
+}
+
+/// Builds the tree over the part's meshes, for nodes of W children.
+template <int W>
+simd::TriangleTree build_triangles(const Part& part, const SceneDesc& desc, const BuildOptions& options,
+                                   Executor& executor) {
+  // Fetch the corners once, in the order of the keys.
+  std::size_t count = 0;
+  for (const PartMesh& mesh : part.meshes) count += primitive_count(desc.geometries[mesh.geometry_id.value]);
+  const RawArray<Triangle> triangles(count);
+  RawArray<Box3> boxes(count);
+  for (const PartMesh& part_mesh : part.meshes) {
+    const auto& mesh = std::get<TriangleMesh>(desc.geometries[part_mesh.geometry_id.value].shapes);
+    parallel_for(executor, 0, mesh.indices.size(), kGrain, [&](std::size_t i) {
+      const Triangle triangle = triangle_of(mesh, PrimId(i));
+      triangles[part_mesh.first_key + i] = triangle;
+      boxes[part_mesh.first_key + i] = triangle.box();
+    });
+  }
+
+  // Build and collapse; let go of what the next step does not need.
+  Bvh bvh = build(std::span<const Box3>(boxes.data(), count), options);
+  boxes = {};
+  const WideBvh<W> wide = collapse<W>(bvh, executor);
+  bvh = {};
+  return simd::TriangleTree(wide, std::span<const Triangle>(triangles.data(), count), {}, executor);
 }
 
 /// Builds a tree over `items`, puts them into leaf order and makes prim_ids count along.
@@ -45,13 +75,10 @@ Bvh build_in_leaf_order(std::vector<Item>& items, const BoxOf& box_of, const Bui
   return bvh;
 }
 
-void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options, Executor& executor) {
-  part.triangle_bvh = build_in_leaf_order(
-      part.triangles,
-      [](const LeafTriangle& t) {
-        return Triangle{t.a, t.b, t.c}.box();
-      },
-      options, executor);
+void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options, int width,
+                 Executor& executor) {
+  part.triangles = width == 4 ? build_triangles<4>(part, desc, options, executor)
+                              : build_triangles<8>(part, desc, options, executor);
   part.shape_bvh = build_in_leaf_order(
       part.shapes,
       [&](const LeafShape& s) {
@@ -59,7 +86,7 @@ void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options,
                           [](const auto& shape) { return shape.box(); });
       },
       options, executor);
-  part.bounds = unite(part.triangle_bvh.bounds(), part.shape_bvh.bounds());
+  part.bounds = unite(part.triangles.box(), part.shape_bvh.bounds());
 }
 
 /// Why the nearest point of `geometry` under a transform is not known; empty when it is.
@@ -87,6 +114,7 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
 
   // Sort what is placed: into the world, or into an object of its own.
   constexpr std::uint32_t kNoPart = 0xffffffffu;
+  std::size_t world_triangles = 0;
   std::vector<std::uint32_t> part_of_geometry(parts->desc.geometries.size(), kNoPart);
   parts->object_from_world.resize(parts->instances.size());
   for (std::size_t i = 0; i < parts->instances.size(); ++i) {
@@ -94,12 +122,13 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
     const Geometry& geometry = parts->desc.geometries[instance.geometry.value];
     bool under_similarity = true;
     if (instance.world_from_object == Affine3::identity()) {
-      add_geometry(parts->world, parts->desc, instance.geometry, InstanceId(i), executor);
+      add_geometry(parts->world, world_triangles, parts->desc, instance.geometry, InstanceId(i));
     } else {
       std::uint32_t& part_index = part_of_geometry[instance.geometry.value];
       if (part_index == kNoPart) {
         part_index = static_cast<std::uint32_t>(parts->objects.size());
-        add_geometry(parts->objects.emplace_back(), parts->desc, instance.geometry, InstanceId(), executor);
+        std::size_t triangles = 0;
+        add_geometry(parts->objects.emplace_back(), triangles, parts->desc, instance.geometry, InstanceId());
       }
       parts->object_from_world[i] = inverse(instance.world_from_object);
       under_similarity = is_similarity(instance.world_from_object);
@@ -111,8 +140,10 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   }
 
   // Build from the inside out: objects, world, placements.
-  for (Part& object : parts->objects) build_trees(object, parts->desc, options, executor);
-  build_trees(parts->world, parts->desc, options, executor);
+  const simd::Kernels* kernels = simd::kernels();
+  const int width = kernels ? kernels->width : 8;
+  for (Part& object : parts->objects) build_trees(object, parts->desc, options, width, executor);
+  build_trees(parts->world, parts->desc, options, width, executor);
   for (Placement& placement : parts->placements)
     placement.world_box =
         transform_box(placement.world_from_object, parts->objects[placement.part_index].bounds);
@@ -124,6 +155,11 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   parts->top_level = build_in_leaf_order(
       parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
+
+  // Choose who answers for the world's triangles.
+  const simd::TriangleTree& triangles = parts->world.triangles;
+  if (!triangles.is_empty() && triangles.is_ordinary()) parts->kernels = kernels;
+  parts->is_only_triangles = parts->world.shapes.empty() && parts->placements.empty();
 
   parts->build_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

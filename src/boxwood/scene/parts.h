@@ -1,20 +1,23 @@
 // parts.h: what stands behind a Scene?
 //
-// A Part is everything that one tree level needs: the triangles and the other shapes of one space, each with
-// a binary tree. The world is one Part (all geometry that is placed without a transform); each geometry that
-// is placed under a transform is a Part in its own object space, shared by its placements, and a top-level
-// tree organises the placements.
+// A Part is everything that one tree level needs: the triangles of one space in a wide tree, packed for the
+// kernels, and the other shapes with a binary tree. The world is one Part (all geometry that is placed
+// without a transform); each geometry that is placed under a transform is a Part in its own object space,
+// shared by its placements, and a top-level tree organises the placements.
 #pragma once
 
 #include "boxwood/scene/scene.h"
+#include "boxwood/simd/kernels.h"
 
 namespace boxwood {
 
-/// A triangle as the leaves hold it: no indirection to a vertex.
-struct LeafTriangle {
-  Vec3 a, b, c;
+/// A mesh of a Part. The triangles of all its meshes are numbered one behind the other, in the order of the
+/// instances: that number is the triangle's key in the tree, so ties by key are ties by (instance,
+/// primitive).
+struct PartMesh {
+  std::uint32_t first_key;
   InstanceId instance_id;  ///< None inside an object's Part: there the placement says it.
-  PrimId primitive_id;
+  GeometryId geometry_id;
 };
 
 /// Any other shape, named by where the description holds it.
@@ -25,11 +28,23 @@ struct LeafShape {
 };
 
 struct Part {
-  Bvh triangle_bvh;  ///< prim_ids count 0, 1, 2, ...: the triangles stand in leaf order.
-  std::vector<LeafTriangle> triangles;
-  Bvh shape_bvh;  ///< The same for shapes.
+  simd::TriangleTree triangles;
+  std::vector<PartMesh> meshes;  ///< By first_key.
+  Bvh shape_bvh;                 ///< prim_ids count 0, 1, 2, ...: the shapes stand in leaf order.
   std::vector<LeafShape> shapes;
   Box3 bounds;
+
+  /// The mesh of a triangle; the primitive is `key` less its first_key.
+  const PartMesh& mesh_of(std::uint32_t key) const {
+    // Halve without a branch: this runs once for each hit.
+    const PartMesh* mesh = meshes.data();
+    for (std::size_t left = meshes.size(); left > 1;) {
+      const std::size_t half = left / 2;
+      mesh = mesh[half].first_key <= key ? mesh + half : mesh;
+      left -= half;
+    }
+    return *mesh;
+  }
 };
 
 /// A geometry under a transform.
@@ -50,6 +65,9 @@ struct Scene::Parts {
   std::vector<Placement> placements;
   Bvh top_level;  ///< Over the world boxes of `placements`.
   Box3 bounds;
+  /// Those for the world's triangles; null when plain C++ is to walk, or there are none.
+  const simd::Kernels* kernels = nullptr;
+  bool is_only_triangles = false;  ///< The world's: no other shape and no placement.
   double build_ms = 0;
   std::string closest_point_obstacle;  ///< Why closest_point cannot be answered; empty when it can.
 };

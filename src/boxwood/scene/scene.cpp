@@ -1,58 +1,18 @@
+// scene.cpp: how is a ray answered?
+//
+// A kernel (simd/kernels.h) finds what the ray does to the world's triangles; rays that it does not take are
+// walked by plain C++ (walk.h), with the same answer. Other shapes and placements follow, within the limit
+// that the triangles left. Batches are in batch.cpp.
 #include "boxwood/scene/scene.h"
 
 #include <algorithm>
-#include <stdexcept>
 
-#include "boxwood/scene/walk.h"
+#include "boxwood/scene/closest.h"
 
 namespace boxwood {
 namespace {
 
-constexpr std::size_t kRaysPerTask = 1024;
-
-Hit make_hit(const Scene::Parts& parts, const Crossing& crossing, InstanceId instance_id,
-             PrimId primitive_id) {
-  Hit hit;
-  hit.t = crossing.t;
-  hit.u = crossing.u;
-  hit.v = crossing.v;
-  hit.part = crossing.part;
-  hit.instance_id = instance_id;
-  hit.geometry_id = parts.instances[instance_id.value].geometry;
-  hit.primitive_id = primitive_id;
-  return hit;
-}
-
-/// Keeps the first in the order of the contract.
-struct ClosestSink {
-  float t_max;
-  Crossing crossing{};
-  InstanceId instance_id{};
-  PrimId primitive_id{};
-
-  float limit() const { return t_max; }
-  void report(const Crossing& c, InstanceId instance, PrimId primitive) {
-    if (crossing.is_hit() && c.t == crossing.t) {
-      // The geometry follows from the instance, so two ids and the part decide a tie.
-      if (instance != instance_id
-              ? instance > instance_id
-              : (primitive != primitive_id ? primitive > primitive_id : c.part >= crossing.part))
-        return;
-    }
-    crossing = c;
-    instance_id = instance;
-    primitive_id = primitive;
-    t_max = c.t;
-  }
-};
-
-/// Stops the walk at the first report.
-struct AnySink {
-  float t_max;
-  bool found = false;
-  float limit() const { return found ? -kInfinity : t_max; }
-  void report(const Crossing&, InstanceId, PrimId) { found = true; }
-};
+using detail::make_hit;
 
 /// Keeps everything.
 struct AllSink {
@@ -65,44 +25,13 @@ struct AllSink {
   }
 };
 
-/// Works out the normal, once the hit is known.
-void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit) {
-  const Geometry& geometry = parts.desc.geometries[hit.geometry_id.value];
-  const Affine3& world_from_object = parts.instances[hit.instance_id.value].world_from_object;
-  const Affine3& object_from_world = parts.object_from_world[hit.instance_id.value];
-  const bool is_moved = !(world_from_object == Affine3::identity());
-
-  Vec3 normal;
-  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
-    normal = triangle_of(*mesh, hit.primitive_id).normal();
-  } else {
-    const Crossing crossing{hit.t, hit.u, hit.v, hit.part};
-    const PreparedRay local =
-        is_moved ? PreparedRay(object_from_world.point(ray.origin), object_from_world.vector(ray.direction),
-                               -kInfinity, kInfinity, {})
-                 : ray;
-    normal = with_shape(geometry, hit.primitive_id,
-                        [&](const auto& shape) { return shape.normal(local, crossing); });
-  }
-  hit.normal = is_moved ? normalize(transform_normal(object_from_world, normal)) : normal;
-}
-
-template <class Statistics>
-Hit find_closest(const Scene::Parts& parts, const Ray& ray, Statistics& statistics) {
-  const PreparedRay prepared(ray, parts.bounds);
-  if (!prepared.is_valid()) return {};
-  ClosestSink sink{prepared.t_max};
-  detail::walk(parts, prepared, sink, statistics);
-  if (!sink.crossing.is_hit()) return {};
-  Hit hit = make_hit(parts, sink.crossing, sink.instance_id, sink.primitive_id);
-  fill_normal(parts, prepared, hit);
-  return hit;
-}
-
-void check_lengths(std::size_t rays, std::size_t hits) {
-  if (rays != hits)
-    throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " +
-                                std::to_string(hits) + " hits, expected the same number");
+/// Leaves one of each crossing of a triangle, which may stand in several leaves. `hits` are sorted.
+void drop_repeated(const Scene::Parts& parts, std::vector<Hit>& hits) {
+  const auto is_repeated = [&parts](const Hit& a, const Hit& b) {
+    return a.t == b.t && a.instance_id == b.instance_id && a.primitive_id == b.primitive_id &&
+           std::holds_alternative<TriangleMesh>(parts.desc.geometries[a.geometry_id.value].shapes);
+  };
+  hits.erase(std::unique(hits.begin(), hits.end(), is_repeated), hits.end());
 }
 
 }  // namespace
@@ -113,44 +42,65 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Hit Scene::closest_hit(const Ray& ray) const {
+  const Parts& parts = *parts_;
+  simd::TriangleHit found;
+  if (parts.kernels && parts.kernels->closest_hit(parts.world.triangles, ray, parts.bounds, found))
+    return detail::finish_closest(parts, ray, found);
   NoStatistics none;
-  return find_closest(*parts_, ray, none);
+  return detail::walk_closest(parts, ray, none);
 }
 
 Hit Scene::closest_hit(const Ray& ray, TraversalStatistics& statistics) const {
-  return find_closest(*parts_, ray, statistics);
+  return detail::walk_closest(*parts_, ray, statistics);
 }
 
 bool Scene::any_hit(const Ray& ray) const {
-  const PreparedRay prepared(ray, parts_->bounds);
-  if (!prepared.is_valid()) return false;
-  AnySink sink{prepared.t_max};
-  NoStatistics none;
-  detail::walk(*parts_, prepared, sink, none);
-  return sink.found;
+  const Parts& parts = *parts_;
+  bool is_hit = false;
+  if (parts.kernels && parts.kernels->any_hit(parts.world.triangles, ray, parts.bounds, is_hit))
+    return is_hit || (!parts.is_only_triangles && detail::is_other_hit(parts, ray));
+  return detail::walk_any(parts, ray);
 }
 
 void Scene::all_hits(const Ray& ray, std::vector<Hit>& hits) const {
   hits.clear();
-  const PreparedRay prepared(ray, parts_->bounds);
-  if (!prepared.is_valid()) return;
-  AllSink sink{*parts_, prepared.t_max, hits};
-  NoStatistics none;
-  detail::walk(*parts_, prepared, sink, none);
+  const Parts& parts = *parts_;
+  static thread_local std::vector<simd::TriangleHit> found;
+  found.clear();
+  const bool is_answered =
+      parts.kernels && parts.kernels->all_hits(parts.world.triangles, ray, parts.bounds, found);
+  for (const simd::TriangleHit& hit : found) hits.push_back(detail::finish_triangle(parts, ray, hit));
+
+  // Add what the kernel does not know.
+  if (!is_answered || !parts.is_only_triangles) {
+    const PreparedRay prepared(ray, parts.bounds);
+    if (!prepared.is_valid()) return;
+    const std::size_t first = hits.size();
+    AllSink sink{parts, prepared.t_max, hits};
+    NoStatistics none;
+    if (!is_answered) detail::walk_triangles(parts.world, prepared, detail::NoPlacement{}, sink, none);
+    detail::walk_others(parts, prepared, sink, none);
+    for (std::size_t i = first; i < hits.size(); ++i) detail::fill_normal(parts, prepared, hits[i]);
+  }
   std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return comes_before(a, b); });
-  for (Hit& hit : hits) fill_normal(*parts_, prepared, hit);
+  drop_repeated(parts, hits);
 }
 
-void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor) const {
-  check_lengths(rays.size(), hits.size());
-  parallel_for(executor ? *executor : default_executor(), 0, rays.size(), kRaysPerTask,
-               [&](std::size_t i) { hits[i] = closest_hit(rays[i]); });
-}
-
-void Scene::any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor) const {
-  check_lengths(rays.size(), hits.size());
-  parallel_for(executor ? *executor : default_executor(), 0, rays.size(), kRaysPerTask,
-               [&](std::size_t i) { hits[i] = any_hit(rays[i]); });
+std::size_t Scene::count_hits(const Ray& ray) const {
+  // Where there are only triangles, their keys say which crossings are the same.
+  const Parts& parts = *parts_;
+  static thread_local std::vector<simd::TriangleHit> found;
+  found.clear();
+  if (parts.is_only_triangles && parts.kernels &&
+      parts.kernels->all_hits(parts.world.triangles, ray, parts.bounds, found)) {
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+    const auto last =
+        std::unique(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.key == b.key; });
+    return static_cast<std::size_t>(last - found.begin());
+  }
+  std::vector<Hit> hits;
+  all_hits(ray, hits);
+  return hits.size();
 }
 
 const SceneDesc& Scene::description() const {
@@ -171,9 +121,14 @@ SceneStatistics Scene::statistics() const {
     s.tree_bytes += bvh.size_bytes();
   };
   const auto add_part = [&](const Part& part) {
-    add_tree(part.triangle_bvh);
+    if (!part.triangles.is_empty()) {
+      ++s.trees;
+      s.nodes += part.triangles.node_count();
+      s.tree_bytes += part.triangles.node_bytes();
+      s.geometry_bytes += part.triangles.size_bytes() - part.triangles.node_bytes();
+    }
     add_tree(part.shape_bvh);
-    s.geometry_bytes += part.triangles.size() * sizeof(LeafTriangle) + part.shapes.size() * sizeof(LeafShape);
+    s.geometry_bytes += part.shapes.size() * sizeof(LeafShape) + part.meshes.size() * sizeof(PartMesh);
   };
   add_part(parts_->world);
   for (const Part& object : parts_->objects) add_part(object);

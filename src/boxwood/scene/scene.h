@@ -26,11 +26,12 @@ struct ScenePoint {
   friend bool operator==(const ScenePoint&, const ScenePoint&) = default;
 };
 
-/// Sizes of what was built.
+/// Sizes of what was built, beside the description that the scene keeps.
 struct SceneStatistics {
   std::size_t primitives = 0;  ///< Shown: each instance counts.
   std::size_t trees = 0, nodes = 0;
-  std::size_t tree_bytes = 0, geometry_bytes = 0;
+  std::size_t tree_bytes = 0;      ///< Nodes, and the placements that the top-level tree organises.
+  std::size_t geometry_bytes = 0;  ///< What the leaves hold: triangles in blocks, names of other shapes.
   double build_ms = 0;
 };
 
@@ -51,13 +52,16 @@ class Scene {
   /// Every crossing in [t_min, t_max] once,
   /// in the order of the contract (comes_before). Replaces what `hits` holds.
   void all_hits(const Ray& ray, std::vector<Hit>& hits) const;
+  /// How many crossings there are in [t_min, t_max]: the number of all_hits, without working them out.
+  std::size_t count_hits(const Ray& ray) const;
 
-  /// The same for many rays: hits[i] answers rays[i], bit for bit as the call with one ray. Throws
-  /// std::invalid_argument when the lengths differ. Uses `executor`, by default oneTBB.
+  /// The same for many rays, in any order, and faster: hits[i] answers rays[i], bit for bit as the call with
+  /// one ray. Throws std::invalid_argument when the lengths differ. Uses `executor`, by default oneTBB; up to
+  /// a few hundred rays are answered on the calling thread.
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor = nullptr) const;
   void any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor = nullptr) const;
 
-  /// As closest_hit, and adds up the work: boxes and shapes tested.
+  /// As closest_hit, and adds up the work: boxes and shapes tested by plain C++, one ray at a time.
   Hit closest_hit(const Ray& ray, TraversalStatistics& statistics) const;
 
   /// The nearest point of any surface within `max_distance`; equal distance goes to the smallest ids.

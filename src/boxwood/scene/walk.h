@@ -2,9 +2,10 @@
 //
 // One walk for closest, any and all hits: they differ only in their sink. Below a placement the ray is in
 // object space, and each crossing passes two gates (shape/gate.h): that of its own box, and that of the
-// placement's world box.
+// placement's world box. Plain C++: it answers for the kernels (simd/kernels.h) what they do not take.
 #pragma once
 
+#include "boxwood/query/traverse_wide.h"
 #include "boxwood/scene/parts.h"
 #include "boxwood/shape/gate.h"
 
@@ -41,13 +42,71 @@ struct UnderPlacement {
   InstanceId name(InstanceId) const { return instance_id; }
 };
 
-/// Meets the triangles (or the other shapes) of a Part.
-template <class Item, class Above, class Sink>
-class PartQuery {
+/// Shows every leaf of the tree that may matter to `query`, whatever the tree's width.
+template <WideQuery Q, class Statistics>
+void traverse_triangles(const simd::TriangleTree& tree, Q& query, Statistics& statistics) {
+  if (tree.is_empty()) return;
+  if (tree.width() == 4)
+    traverse_wide<4>(
+        [&](ChildRef node) -> const auto& { return tree.node_at<4>(node); }, query, statistics);
+  else
+    traverse_wide<8>(
+        [&](ChildRef node) -> const auto& { return tree.node_at<8>(node); }, query, statistics);
+}
+
+/// Names the crossings of one triangle, once there are any.
+template <class Above, class Sink>
+struct LabelledByKey {
+  Sink& sink;
+  const Part& part;
+  const Above& above;
+  std::uint32_t key;
+  float limit() const { return sink.limit(); }
+  void report(const Crossing& crossing) {
+    const PartMesh& mesh = part.mesh_of(key);
+    sink.report(crossing, above.name(mesh.instance_id), PrimId(key - mesh.first_key));
+  }
+};
+
+/// Meets the triangles of a Part.
+template <class Above, class Sink, class Statistics>
+class TriangleQuery {
  public:
-  PartQuery(const PreparedRay& ray, const SceneDesc& desc, const std::vector<Item>& items, const Above& above,
-            Sink& sink)
-      : ray_(ray), desc_(desc), items_(items), above_(above), sink_(sink) {}
+  TriangleQuery(const PreparedRay& ray, const Part& part, const Above& above, Sink& sink,
+                Statistics& statistics)
+      : ray_(ray), part_(part), above_(above), sink_(sink), statistics_(statistics) {}
+
+  float bound(const Box3& box) const { return ray_.bound(box); }
+  float limit() const {
+    Labelled<Sink> any{sink_, {}, {}};
+    return above_.gate(any).limit();
+  }
+  void visit(ChildRef leaf) {
+    for (const simd::TriangleBlock& block : part_.triangles.blocks_of(leaf)) {
+      for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+        if (is_padding(block.key, static_cast<int>(lane))) continue;
+        statistics_.count_shapes(1);
+        LabelledByKey<Above, Sink> labelled{sink_, part_, above_, block.key[lane]};
+        auto&& gate = above_.gate(labelled);
+        intersect_gated(ray_, block.triangle(lane), gate);
+      }
+    }
+  }
+
+ private:
+  const PreparedRay& ray_;
+  const Part& part_;
+  const Above& above_;
+  Sink& sink_;
+  Statistics& statistics_;
+};
+
+/// Meets the other shapes of a Part.
+template <class Above, class Sink>
+class ShapeQuery {
+ public:
+  ShapeQuery(const PreparedRay& ray, const SceneDesc& desc, const Part& part, const Above& above, Sink& sink)
+      : ray_(ray), desc_(desc), part_(part), above_(above), sink_(sink) {}
 
   float bound(const Box3& box) const { return ray_.bound(box); }
   float limit() const {
@@ -55,30 +114,32 @@ class PartQuery {
     return above_.gate(any).limit();
   }
   void visit(PrimId id) {
-    const Item& item = items_[id.value];
+    const LeafShape& item = part_.shapes[id.value];
     Labelled<Sink> labelled{sink_, above_.name(item.instance_id), item.primitive_id};
     auto&& gate = above_.gate(labelled);
-    if constexpr (std::is_same_v<Item, LeafTriangle>)
-      intersect_gated(ray_, Triangle{item.a, item.b, item.c}, gate);
-    else
-      with_shape(desc_.geometries[item.geometry_id.value], item.primitive_id,
-                 [&](const auto& shape) { intersect_gated(ray_, shape, gate); });
+    with_shape(desc_.geometries[item.geometry_id.value], item.primitive_id,
+               [&](const auto& shape) { intersect_gated(ray_, shape, gate); });
   }
 
  private:
   const PreparedRay& ray_;
   const SceneDesc& desc_;
-  const std::vector<Item>& items_;
+  const Part& part_;
   const Above& above_;
   Sink& sink_;
 };
 
 template <class Above, class Sink, class Statistics>
-void walk_part(const Scene::Parts& parts, const Part& part, const PreparedRay& ray, const Above& above,
-               Sink& sink, Statistics& statistics) {
-  PartQuery<LeafTriangle, Above, Sink> triangles(ray, parts.desc, part.triangles, above, sink);
-  traverse(part.triangle_bvh, triangles, statistics);
-  PartQuery<LeafShape, Above, Sink> shapes(ray, parts.desc, part.shapes, above, sink);
+void walk_triangles(const Part& part, const PreparedRay& ray, const Above& above, Sink& sink,
+                    Statistics& statistics) {
+  TriangleQuery<Above, Sink, Statistics> triangles(ray, part, above, sink, statistics);
+  traverse_triangles(part.triangles, triangles, statistics);
+}
+
+template <class Above, class Sink, class Statistics>
+void walk_shapes(const Scene::Parts& parts, const Part& part, const PreparedRay& ray, const Above& above,
+                 Sink& sink, Statistics& statistics) {
+  ShapeQuery<Above, Sink> shapes(ray, parts.desc, part, above, sink);
   traverse(part.shape_bvh, shapes, statistics);
 }
 
@@ -100,7 +161,9 @@ class PlacementQuery {
     const PreparedRay local(placement.object_from_world.point(ray_.origin),
                             placement.object_from_world.vector(ray_.direction),
                             inner_t_min(ray_, above.inside), above.gate(any).limit(), part.bounds);
-    if (local.is_valid()) walk_part(parts_, part, local, above, sink_, statistics_);
+    if (!local.is_valid()) return;
+    walk_triangles(part, local, above, sink_, statistics_);
+    walk_shapes(parts_, part, local, above, sink_, statistics_);
   }
 
  private:
@@ -110,13 +173,20 @@ class PlacementQuery {
   Statistics& statistics_;
 };
 
-/// Shows `sink` everything that `ray` may meet:
+/// Shows `sink` everything that `ray` may meet but the world's triangles:
 /// sink.limit(), sink.report(crossing, instance_id, primitive_id).
 template <class Sink, class Statistics>
-void walk(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
-  walk_part(parts, parts.world, ray, NoPlacement{}, sink, statistics);
+void walk_others(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
+  walk_shapes(parts, parts.world, ray, NoPlacement{}, sink, statistics);
   PlacementQuery<Sink, Statistics> placements(parts, ray, sink, statistics);
   traverse(parts.top_level, placements, statistics);
+}
+
+/// Everything.
+template <class Sink, class Statistics>
+void walk(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
+  walk_triangles(parts.world, ray, NoPlacement{}, sink, statistics);
+  walk_others(parts, ray, sink, statistics);
 }
 
 }  // namespace boxwood::detail

@@ -61,14 +61,38 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> tri
       const Triangle& t = triangles[id.value];
       const float v[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
       for (int k = 0; k < 9; ++k) block.v[k / 3][k % 3][lane] = v[k];
-      block.key[lane] = keys[id.value];
+      block.key[lane] = keys.empty() ? id.value : keys[id.value];
     }
   });
+}
+
+template <int W>
+WideBvh<W> TriangleTree::unpack() const {
+  WideBvh<W> wide;
+  wide.box = box_;
+  const std::span<const WideNode<W>> packed = nodes<W>();
+  wide.nodes.assign(packed.begin(), packed.end());
+  const auto from_units = [&](ChildRef ref) {
+    if (ref.is_empty()) return ref;
+    constexpr std::uint32_t kNowhere = (1u << 28) - 1;
+    const std::size_t offset = ref.index() * kUnit, begin = ref.is_leaf() ? blocks_at_ : 0,
+                      size = ref.is_leaf() ? sizeof(TriangleBlock) : sizeof(WideNode<W>);
+    const bool is_somewhere = offset >= begin && (offset - begin) % size == 0;
+    const std::uint32_t index = is_somewhere ? static_cast<std::uint32_t>((offset - begin) / size) : kNowhere;
+    return ChildRef{index << 4 | (ref.bits & 15)};
+  };
+  for (WideNode<W>& node : wide.nodes)
+    for (ChildRef& child : node.children) child = from_units(child);
+  for (const TriangleBlock& block : blocks())
+    for (const std::uint32_t key : block.key) wide.slots.push_back(PrimId(key));
+  return wide;
 }
 
 template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
                                     std::span<const std::uint32_t>, Executor&);
 template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
                                     std::span<const std::uint32_t>, Executor&);
+template WideBvh<4> TriangleTree::unpack() const;
+template WideBvh<8> TriangleTree::unpack() const;
 
 }  // namespace boxwood::simd

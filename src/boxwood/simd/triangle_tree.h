@@ -32,8 +32,8 @@ class TriangleTree {
 
   TriangleTree() = default;
 
-  /// Packs `wide`; its slots pick the triangles. The executor shows in the time only. Throws
-  /// std::length_error when the pool would be larger than 8 GB.
+  /// Packs `wide`; its slots pick the triangles. No keys: each triangle's is its number. The executor shows
+  /// in the time only. Throws std::length_error when the pool would be larger than 8 GB.
   template <int W>
   TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> triangles,
                std::span<const std::uint32_t> keys, Executor& executor);
@@ -48,19 +48,33 @@ class TriangleTree {
   std::size_t node_count() const { return node_count_; }
   std::size_t block_count() const { return block_count_; }
   std::size_t size_bytes() const { return pool_.size(); }
+  std::size_t node_bytes() const { return blocks_at_; }
+
+  /// The tree as it was before it was packed, with keys for primitives: for metrics and validate. Safe on any
+  /// bytes: a reference that leads nowhere becomes one out of range. Precondition: W = width().
+  template <int W>
+  WideBvh<W> unpack() const;
 
   const char* pool() const { return pool_.data(); }
   /// The bytes behind a reference of the pool.
   const char* at(ChildRef ref) const { return pool_.data() + std::size_t(ref.index()) * kUnit; }
+  /// The blocks of a leaf.
+  std::span<const TriangleBlock> blocks_of(ChildRef leaf) const {
+    return {reinterpret_cast<const TriangleBlock*>(at(leaf)), leaf.blocks()};
+  }
   /// The block that a hit names.
   const TriangleBlock& block_at(std::uint32_t units) const {
-    return *reinterpret_cast<const TriangleBlock*>(pool_.data() + units * kUnit);
+    return *reinterpret_cast<const TriangleBlock*>(pool_.data() + std::size_t(units) * kUnit);
   }
   /// All blocks, one behind the other.
   std::span<const TriangleBlock> blocks() const {
     return {reinterpret_cast<const TriangleBlock*>(pool_.data() + blocks_at_), block_count_};
   }
-  /// The nodes of a tree with W = width() children; references count in units.
+  /// A node, or all nodes, of a tree with W = width() children; references count in units.
+  template <int W>
+  const WideNode<W>& node_at(ChildRef node) const {
+    return *reinterpret_cast<const WideNode<W>*>(at(node));
+  }
   template <int W>
   std::span<const WideNode<W>> nodes() const {
     return {reinterpret_cast<const WideNode<W>*>(pool_.data()), node_count_};
@@ -78,5 +92,7 @@ extern template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Tr
                                            std::span<const std::uint32_t>, Executor&);
 extern template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
                                            std::span<const std::uint32_t>, Executor&);
+extern template WideBvh<4> TriangleTree::unpack() const;
+extern template WideBvh<8> TriangleTree::unpack() const;
 
 }  // namespace boxwood::simd

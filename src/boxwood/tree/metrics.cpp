@@ -2,25 +2,13 @@
 
 #include <algorithm>
 
+#include "boxwood/tree/face_area.h"
+
 namespace boxwood {
 namespace {
 
 double step_cost(const BvhNode& node, double traversal) {
   return node.is_leaf() ? node.count : traversal;
-}
-
-/// The area of those parts of the faces of `box` that lie inside `clip`, borders included.
-double face_area_inside(const Box3& box, const Box3& clip) {
-  const Box3 common = intersect(box, clip);
-  if (common.is_empty()) return 0;
-  double extent[3];
-  for (int k = 0; k < 3; ++k) extent[k] = double(common.upper[k]) - common.lower[k];
-  double area = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int faces = (common.lower[k] == box.lower[k]) + (common.upper[k] == box.upper[k]);
-    area += faces * extent[(k + 1) % 3] * extent[(k + 2) % 3];
-  }
-  return area;
 }
 
 }  // namespace
@@ -94,6 +82,7 @@ TreeShape tree_shape(const Bvh& bvh) {
   }
   shape.mean_leaf_depth /= double(shape.leaf_count);
   shape.mean_leaf_size = double(shape.primitive_count) / double(shape.leaf_count);
+  if (shape.node_count > shape.leaf_count) shape.mean_children = 2;
   return shape;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "boxwood/tree/bvh.h"
+#include "boxwood/tree/wide.h"
 
 namespace boxwood {
 
@@ -12,5 +13,12 @@ namespace boxwood {
 /// hold, else the first broken one in a sentence that names the node. Safe on any bytes: indices out of
 /// range, cycles, NaN. Cost: linear.
 std::string validate(const Bvh& bvh, std::span<const Box3> boxes);
+
+/// The same for the invariants of wide.h.
+template <int W>
+std::string validate(const WideBvh<W>& wide, std::span<const Box3> boxes);
+
+extern template std::string validate(const WideBvh<4>&, std::span<const Box3>);
+extern template std::string validate(const WideBvh<8>&, std::span<const Box3>);
 
 }  // namespace boxwood

@@ -10,8 +10,10 @@
 //  2. A child is an interior node behind its parent in the array, a run of 1 to kMaxLeafBlocks blocks, or
 //  empty.
 //  3. An empty child has the empty box, so that no ray enters it.
-//  4. The box of a child holds what is below it; each block belongs to one leaf, and each primitive stands in
-//     one block (in a tree with spatial splits: at least one).
+//  4. The box of a child holds the boxes below it; each block belongs to one leaf.
+//  5. Each primitive with a box that is not empty stands in one block, inside the box of its leaf; in a tree
+//     with spatial splits it may stand in several leaves, whose boxes together reach from end to end of it.
+//  6. No node lies deeper than kMaxDepth (bvh.h).
 #pragma once
 
 #include <cstdint>
@@ -68,6 +70,12 @@ struct alignas(64) WideNode {
 };
 static_assert(sizeof(WideNode<8>) == 256 && sizeof(WideNode<4>) == 128);
 
+/// Whether a slot of a block, or the key of a lane, only fills the block.
+template <class T>
+constexpr bool is_padding(const T* block, int lane) {
+  return lane > 0 && block[lane] == block[0];
+}
+
 template <int W>
 struct WideBvh {
   std::vector<WideNode<W>> nodes;
@@ -76,6 +84,9 @@ struct WideBvh {
 
   bool is_empty() const { return nodes.empty(); }
   std::size_t block_count() const { return slots.size() / kBlockWidth; }
+  std::size_t size_bytes() const {
+    return nodes.size() * sizeof(WideNode<W>) + slots.size() * sizeof(PrimId);
+  }
 };
 
 }  // namespace boxwood

@@ -1,0 +1,125 @@
+// batch.cpp: how are many rays answered?
+//
+// In chunks, one for each task: the kernel takes a chunk's rays in turns and says what each does to the
+// world's triangles, plain C++ answers the few rays that it does not take, and then every answer is worked
+// out. A chunk is long enough that the kernel is rarely short of rays, and its findings stay in the cache.
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "boxwood/scene/closest.h"
+
+namespace boxwood {
+namespace {
+
+constexpr std::size_t kMaxChunk = 4096, kMinChunk = 512;
+
+void check_lengths(std::size_t rays, std::size_t hits) {
+  if (rays != hits)
+    throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " +
+                                std::to_string(hits) + " hits, expected the same number");
+}
+
+/// Calls body(begin, end) for chunks of `count` rays: some for each thread, so that all end together.
+template <class Body>
+void for_chunks(Executor* given, std::size_t count, const Body& body) {
+  if (count <= kMinChunk) {
+    if (count > 0) body(0, count);
+    return;
+  }
+  Executor& executor = given ? *given : default_executor();
+  const std::size_t share = count / (8 * static_cast<std::size_t>(executor.concurrency()));
+  executor.for_range(0, count, std::clamp(share, kMinChunk, kMaxChunk), body);
+}
+
+/// A thread's memory between a kernel and the answers; taken while in use, because a user's own shape may ask
+/// a scene from inside.
+class Scratch {
+ public:
+  Scratch() : buffers_(std::exchange(spare(), {})) {
+    buffers_.found.resize(kMaxChunk);
+    buffers_.unusual.clear();
+  }
+  ~Scratch() { spare() = std::move(buffers_); }
+  Scratch(const Scratch&) = delete;
+
+  simd::TriangleHit* found() { return buffers_.found.data(); }
+  std::vector<std::uint32_t>& unusual() { return buffers_.unusual; }
+
+ private:
+  struct Buffers {
+    std::vector<simd::TriangleHit> found;
+    std::vector<std::uint32_t> unusual;
+  };
+  static Buffers& spare() {
+    static thread_local Buffers mine;
+    return mine;
+  }
+  Buffers buffers_;
+};
+
+/// Asks for the blocks of a hit some turns before it is worked out.
+void prefetch(const simd::TriangleTree& triangles, const simd::TriangleHit& hit) {
+  if (!hit.is_hit()) return;
+  const char* block = reinterpret_cast<const char*>(&triangles.block_at(hit.block));
+  __builtin_prefetch(block);
+  __builtin_prefetch(block + 64);
+  __builtin_prefetch(block + 128);
+}
+
+}  // namespace
+
+void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor) const {
+  check_lengths(rays.size(), hits.size());
+  const Parts& parts = *parts_;
+  for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
+    if (!parts.kernels) {
+      for (std::size_t i = begin; i < end; ++i) hits[i] = closest_hit(rays[i]);
+      return;
+    }
+    const simd::TriangleTree& triangles = parts.world.triangles;
+    Scratch scratch;
+    simd::TriangleHit* const found = scratch.found();
+    std::vector<std::uint32_t>& unusual = scratch.unusual();
+    const std::size_t count = end - begin;
+    parts.kernels->closest_hits(triangles, rays.subspan(begin, count), parts.bounds, found, unusual);
+    std::sort(unusual.begin(), unusual.end());
+    for (const std::uint32_t i : unusual) found[i] = {};
+
+    constexpr std::size_t kAhead = 8;
+    auto next_unusual = unusual.begin();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i + kAhead < count) prefetch(triangles, found[i + kAhead]);
+      if (next_unusual != unusual.end() && *next_unusual == i) {
+        NoStatistics none;
+        hits[begin + i] = detail::walk_closest(parts, rays[begin + i], none);
+        ++next_unusual;
+      } else {
+        hits[begin + i] = detail::finish_closest(parts, rays[begin + i], found[i]);
+      }
+    }
+  });
+}
+
+void Scene::any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor) const {
+  check_lengths(rays.size(), hits.size());
+  const Parts& parts = *parts_;
+  for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
+    if (!parts.kernels) {
+      for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(rays[i]);
+      return;
+    }
+    Scratch scratch;
+    std::vector<std::uint32_t>& unusual = scratch.unusual();
+    bool* const is_hit = &hits[begin];
+    parts.kernels->any_hits(parts.world.triangles, rays.subspan(begin, end - begin), parts.bounds, is_hit,
+                            unusual);
+    for (const std::uint32_t i : unusual) is_hit[i] = detail::walk_any(parts, rays[begin + i]);
+    if (parts.is_only_triangles) return;
+    for (std::size_t i = begin; i < end; ++i)
+      if (!hits[i]) hits[i] = detail::is_other_hit(parts, rays[i]);
+  });
+}
+
+}  // namespace boxwood

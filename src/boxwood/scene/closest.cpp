@@ -1,0 +1,116 @@
+#include "boxwood/scene/closest.h"
+
+namespace boxwood::detail {
+namespace {
+
+/// Keeps the first in the order of the contract.
+struct ClosestSink {
+  float t_max;
+  Crossing crossing{};
+  InstanceId instance_id{};
+  PrimId primitive_id{};
+
+  float limit() const { return t_max; }
+  void report(const Crossing& c, InstanceId instance, PrimId primitive) {
+    if (crossing.is_hit() && c.t == crossing.t) {
+      // The geometry follows from the instance, so two ids and the part decide a tie.
+      if (instance != instance_id
+              ? instance > instance_id
+              : (primitive != primitive_id ? primitive > primitive_id : c.part >= crossing.part))
+        return;
+    }
+    crossing = c;
+    instance_id = instance;
+    primitive_id = primitive;
+    t_max = c.t;
+  }
+};
+
+/// Stops the walk at the first report.
+struct AnySink {
+  float t_max;
+  bool found = false;
+  float limit() const { return found ? -kInfinity : t_max; }
+  void report(const Crossing&, InstanceId, PrimId) { found = true; }
+};
+
+template <class Statistics>
+Hit find_closest(const Scene::Parts& parts, const Ray& ray, Statistics& statistics) {
+  const PreparedRay prepared(ray, parts.bounds);
+  if (!prepared.is_valid()) return {};
+  ClosestSink sink{prepared.t_max};
+  walk(parts, prepared, sink, statistics);
+  if (!sink.crossing.is_hit()) return {};
+  Hit hit = make_hit(parts, sink.crossing, sink.instance_id, sink.primitive_id);
+  fill_normal(parts, prepared, hit);
+  return hit;
+}
+
+}  // namespace
+
+void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit) {
+  const Geometry& geometry = parts.desc.geometries[hit.geometry_id.value];
+  const Affine3& world_from_object = parts.instances[hit.instance_id.value].world_from_object;
+  const Affine3& object_from_world = parts.object_from_world[hit.instance_id.value];
+  const bool is_moved = !(world_from_object == Affine3::identity());
+
+  Vec3 normal;
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+    normal = triangle_of(*mesh, hit.primitive_id).normal();
+  } else {
+    const Crossing crossing{hit.t, hit.u, hit.v, hit.part};
+    const PreparedRay local =
+        is_moved ? PreparedRay(object_from_world.point(ray.origin), object_from_world.vector(ray.direction),
+                               -kInfinity, kInfinity, {})
+                 : ray;
+    normal = with_shape(geometry, hit.primitive_id,
+                        [&](const auto& shape) { return shape.normal(local, crossing); });
+  }
+  hit.normal = is_moved ? normalize(transform_normal(object_from_world, normal)) : normal;
+}
+
+Hit add_others(const Scene::Parts& parts, const Ray& ray, const simd::TriangleHit& triangle) {
+  // Begin with the triangle, as if the walk had met it first.
+  const PreparedRay prepared(ray, parts.bounds);
+  ClosestSink sink{prepared.t_max};
+  Hit on_triangle;
+  if (triangle.is_hit()) {
+    on_triangle = finish_triangle(parts, ray, triangle);
+    sink.report({on_triangle.t, on_triangle.u, on_triangle.v, 0}, on_triangle.instance_id,
+                on_triangle.primitive_id);
+  }
+  NoStatistics none;
+  walk_others(parts, prepared, sink, none);
+  if (!sink.crossing.is_hit()) return {};
+  if (sink.instance_id == on_triangle.instance_id) return on_triangle;  // no other shape has its instance
+  Hit hit = make_hit(parts, sink.crossing, sink.instance_id, sink.primitive_id);
+  fill_normal(parts, prepared, hit);
+  return hit;
+}
+
+Hit walk_closest(const Scene::Parts& parts, const Ray& ray, NoStatistics& statistics) {
+  return find_closest(parts, ray, statistics);
+}
+Hit walk_closest(const Scene::Parts& parts, const Ray& ray, TraversalStatistics& statistics) {
+  return find_closest(parts, ray, statistics);
+}
+
+bool walk_any(const Scene::Parts& parts, const Ray& ray) {
+  const PreparedRay prepared(ray, parts.bounds);
+  if (!prepared.is_valid()) return false;
+  AnySink sink{prepared.t_max};
+  NoStatistics none;
+  walk(parts, prepared, sink, none);
+  return sink.found;
+}
+
+bool is_other_hit(const Scene::Parts& parts, const Ray& ray) {
+  const PreparedRay prepared(ray, parts.bounds);
+  if (!prepared.is_valid()) return false;
+  AnySink sink{prepared.t_max};
+  NoStatistics none;
+  walk_others(parts, prepared, sink, none);
+  return sink.found;
+}
+
+}  // namespace boxwood::detail
