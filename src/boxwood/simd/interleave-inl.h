@@ -22,7 +22,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-inline constexpr int kInFlight = 24;
+inline constexpr int kInFlight = 32;
+inline constexpr int kFewNodes =
+    16;  ///< When no more rays than this stand before a node, the others are seen to.
 
 /// Enough for 17 levels of eight children; deeper trees take one ray at a time.
 inline constexpr int kShortStack = 128;
@@ -61,7 +63,7 @@ class Interleaved {
       RayInFlight **i = lists_[kNode], **end = nodes.end;
       nodes.end = lists_[kNode];
       for (; i != end; ++i) append(**i, step(**i), nodes, leaves, done);
-      if (leaves.end - lists_[kLeaf] < kInFlight / 2 && nodes.end != lists_[kNode]) continue;
+      if (nodes.end - lists_[kNode] > kFewNodes) continue;
 
       // Enough rays stand before a leaf: test, take it off the stack, and see where each goes next.
       visit_leaves(leaves.end);
@@ -125,7 +127,7 @@ class Interleaved {
     const DIW di;
     std::int32_t* top = ray.top;
     const char* node = node_at(pool_, static_cast<std::uint32_t>(*top));
-    const Slabs slabs = cross_slabs(node, ray.ray, ray.hit.t);
+    const Slabs slabs = BoxRay(ray.ray).cross(node, ray.hit.t);
     const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
     const std::size_t count = hn::CountTrue(di, slabs.enters);
     if constexpr (kAny) {

@@ -26,21 +26,39 @@ struct Slabs {
   hn::Mask<DIW> enters;
 };
 
-HWY_INLINE Slabs cross_slabs(const char* node, const KernelRay& ray, float limit) {
-  const DW d;
-  const DIW di;
-  const auto cross = [&](int axis, const std::int32_t* rows, const float* shift) {
-    const VW planes = hn::Load(d, reinterpret_cast<const float*>(node + rows[axis]));
-    return hn::BitCast(di, hn::MulAdd(planes, hn::Set(d, ray.inverse[axis]), hn::Set(d, shift[axis])));
-  };
-  const VIW entry =
-      hn::Max(hn::Max(cross(0, ray.near_row, ray.near_shift), cross(1, ray.near_row, ray.near_shift)),
-              hn::Max(cross(2, ray.near_row, ray.near_shift), hn::BitCast(di, hn::Set(d, ray.t_min))));
-  const VIW exit =
-      hn::Min(hn::Min(cross(0, ray.far_row, ray.far_shift), cross(1, ray.far_row, ray.far_shift)),
-              hn::Min(cross(2, ray.far_row, ray.far_shift), hn::BitCast(di, hn::Set(d, limit))));
-  return {entry, hn::RebindMask(di, hn::Le(hn::BitCast(d, entry), hn::BitCast(d, exit)))};
-}
+/// The constants of a ray for boxes, in vectors: a kernel that follows one ray keeps them in registers.
+struct BoxRay {
+  VW inverse[3], near_shift[3], far_shift[3], t_min;
+  std::ptrdiff_t near_row[3], far_row[3];
+
+  HWY_INLINE explicit BoxRay(const KernelRay& ray) {
+    const DW d;
+    for (int k = 0; k < 3; ++k) {
+      inverse[k] = hn::Set(d, ray.inverse[k]);
+      near_shift[k] = hn::Set(d, ray.near_shift[k]);
+      far_shift[k] = hn::Set(d, ray.far_shift[k]);
+      near_row[k] = ray.near_row[k];
+      far_row[k] = ray.far_row[k];
+    }
+    t_min = hn::Set(d, ray.t_min);
+  }
+
+  HWY_INLINE Slabs cross(const char* node, float limit) const {
+    const DW d;
+    const DIW di;
+    const auto near = [&](int k) {
+      const VW planes = hn::Load(d, reinterpret_cast<const float*>(node + near_row[k]));
+      return hn::BitCast(di, hn::MulAdd(planes, inverse[k], near_shift[k]));
+    };
+    const auto far = [&](int k) {
+      const VW planes = hn::Load(d, reinterpret_cast<const float*>(node + far_row[k]));
+      return hn::BitCast(di, hn::MulAdd(planes, inverse[k], far_shift[k]));
+    };
+    const VIW entry = hn::Max(hn::Max(near(0), near(1)), hn::Max(near(2), hn::BitCast(di, t_min)));
+    const VIW exit = hn::Min(hn::Min(far(0), far(1)), hn::Min(far(2), hn::BitCast(di, hn::Set(d, limit))));
+    return {entry, hn::RebindMask(di, hn::Le(hn::BitCast(d, entry), hn::BitCast(d, exit)))};
+  }
+};
 
 /// A key orders children by entry and says which child it is: the entry's lowest three bits make way for the
 /// number. This makes a distance smaller at most, which culls less.
@@ -58,6 +76,26 @@ HWY_INLINE hn::Vec<DI4> sort_descending(hn::Vec<DI4> keys) {
   keys = hn::ConcatUpperLower(d, hn::Min(keys, other), hn::Max(keys, other));
   other = hn::Shuffle2301(keys);
   return hn::OddEven(hn::Min(keys, other), hn::Max(keys, other));
+}
+
+/// Sorts eight keys, the largest first: two fours, one of them turned round, merged (Batcher, "Sorting
+/// Networks and Their Applications", 1968).
+template <class D>
+HWY_INLINE hn::Vec<D> sort_eight_descending(D d, hn::Vec<D> keys) {
+  using V = hn::Vec<D>;
+  const hn::Repartition<std::int64_t, D> d64;
+  // The larger of each pair goes to even lanes, or to even pairs of lanes.
+  const auto by_one = [&](V a, V b) { return hn::OddEven(hn::Min(a, b), hn::Max(a, b)); };
+  const auto by_two = [&](V a, V b) {
+    return hn::BitCast(d, hn::OddEven(hn::BitCast(d64, hn::Min(a, b)), hn::BitCast(d64, hn::Max(a, b))));
+  };
+  keys = by_one(keys, hn::Shuffle2301(keys));
+  keys = by_two(keys, hn::Shuffle0123(keys));
+  keys = by_one(keys, hn::Shuffle2301(keys));
+  const V turned = hn::Reverse(d, keys);
+  keys = hn::ConcatUpperLower(d, hn::Min(keys, turned), hn::Max(keys, turned));
+  keys = by_two(keys, hn::Shuffle1032(keys));
+  return by_one(keys, hn::Shuffle2301(keys));
 }
 
 HWY_INLINE void prefetch_lines(const char* p) {

@@ -93,59 +93,59 @@ HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const s
     return;
   }
 
-  // Rare: one by one.
-  HWY_ALIGN std::int32_t found[kWidth];
-  hn::Store(keys, di, found);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t at = i;
-    for (; at > 0 && stack_keys[at - 1] < found[i]; --at) {
-      stack_keys[at] = stack_keys[at - 1];
-      stack_refs[at] = stack_refs[at - 1];
-    }
-    stack_keys[at] = found[i];
-    stack_refs[at] = children[found[i] & 7];
+  if constexpr (kWidth == 8) {
+    const hn::Vec<D> sorted = sort_eight_descending(di, keys);
+    hn::StoreU(sorted, di, stack_keys);
+    const auto lanes = hn::IndicesFromVec(di, hn::And(sorted, hn::Set(di, 7)));
+    hn::StoreU(hn::TableLookupLanes(hn::Load(di, children), lanes), di, stack_refs);
   }
 }
 
-HWY_INLINE void closest_hit_one(const char* pool, const KernelRay& ray, TriangleHit& hit) {
+/// Not inlined: the compiler would take the constants apart where they were put together, at each node anew.
+HWY_NOINLINE inline void closest_hit_one(const char* pool, const KernelRay& ray, TriangleHit& result) {
   const DIW di;
+  const BoxRay box_ray(ray);
+  TriangleHit hit = result;
   HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
   keys[0] = 0;
   refs[0] = static_cast<std::int32_t>(kBottom);
-  int top = 0;  // of the stack
+  std::size_t top = 0;
   std::uint32_t current = 0;
-  std::int32_t limit_key = std::bit_cast<std::int32_t>(hit.t) | 7;
   while (true) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = cross_slabs(node, ray, hit.t);
+      const Slabs slabs = box_ray.cross(node, hit.t);
       const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
-      const unsigned bits = mask_bits(di, slabs.enters);
+      const std::uint32_t bits = mask_bits(di, slabs.enters);
       if (bits != 0) {
-        const int first = __builtin_ctz(bits);
         if ((bits & (bits - 1)) == 0) {
-          current = static_cast<std::uint32_t>(children[first]);
+          current = static_cast<std::uint32_t>(children[__builtin_ctz(bits)]);
           continue;
         }
         const auto count = static_cast<std::size_t>(__builtin_popcount(bits));
+        for (std::uint32_t b = bits; b; b &= b - 1)
+          prefetch_lines(node_at(pool, static_cast<std::uint32_t>(children[__builtin_ctz(b)])));
         push_children(di, make_keys(slabs.entry), slabs.enters, children, count, keys + top + 1,
                       refs + top + 1);
-        top += static_cast<int>(count) - 1;
+        top += count - 1;
         current = static_cast<std::uint32_t>(refs[top + 1]);
         continue;
       }
     } else {
-      if (current == kBottom) return;
-      if (visit_leaf(pool, current, ray, hit)) limit_key = std::bit_cast<std::int32_t>(hit.t) | 7;
+      if (current == kBottom) break;
+      visit_leaf(pool, current, ray, hit);
     }
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(hit.t) | 7;
     while (keys[top] > limit_key) --top;
     current = static_cast<std::uint32_t>(refs[top]);
     --top;
   }
+  result = hit;
 }
 
-HWY_INLINE bool any_hit_one(const char* pool, const KernelRay& ray, float limit) {
+HWY_NOINLINE inline bool any_hit_one(const char* pool, const KernelRay& ray, float limit) {
   const DIW di;
+  const BoxRay box_ray(ray);
   HWY_ALIGN std::uint32_t refs[kStackSize];
   refs[0] = kBottom;
   int top = 0;
@@ -153,7 +153,7 @@ HWY_INLINE bool any_hit_one(const char* pool, const KernelRay& ray, float limit)
   while (true) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = cross_slabs(node, ray, limit);
+      const Slabs slabs = box_ray.cross(node, limit);
       const auto* children = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes);
       unsigned bits = mask_bits(di, slabs.enters);
       if (bits != 0) {
@@ -174,16 +174,17 @@ HWY_INLINE bool any_hit_one(const char* pool, const KernelRay& ray, float limit)
   }
 }
 
-HWY_INLINE void all_hits_one(const char* pool, const KernelRay& ray, float limit,
-                             std::vector<TriangleHit>& hits) {
+HWY_NOINLINE inline void all_hits_one(const char* pool, const KernelRay& ray, float limit,
+                                      std::vector<TriangleHit>& hits) {
   const DIW di;
+  const BoxRay box_ray(ray);
   HWY_ALIGN std::uint32_t refs[kStackSize];
   refs[0] = kBottom;
   int top = 0;
   for (std::uint32_t current = 0; current != kBottom; current = refs[top--]) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = cross_slabs(node, ray, limit);
+      const Slabs slabs = box_ray.cross(node, limit);
       const auto* children = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes);
       for (std::uint32_t bits = mask_bits(di, slabs.enters); bits; bits &= bits - 1)
         refs[++top] = children[__builtin_ctz(bits)];
