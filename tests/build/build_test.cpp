@@ -346,8 +346,9 @@ TEST(Reinsertion, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Reinsertion, TellsItsProgressAndStops) {
-  const std::vector<Box3> boxes = soup_boxes(50'000);
+  const std::vector<Box3> boxes = soup_boxes(50'000, 3, 0.5f);
   BuildOptions o = BuildOptions::best();
+  o.executor = &serial_executor();
   double last = 0;
   int late = 0;
   o.progress = [&](std::string_view, double done) {

@@ -144,5 +144,64 @@ TEST(Triangle, TouchingABoxIsOverlap) {
   EXPECT_FALSE((Triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}.overlaps(Box3{})));
 }
 
+TEST(Triangle, PartsInRegionsCoverIt) {
+  // Cut space into two by a plane, again and again: each point of the triangle is in the box of a part.
+  Random random(31);
+  for (int i = 0; i < 3000; ++i) {
+    const float size = std::ldexp(1.0f, int(random.below(40)) - 20);
+    const Vec3 shift = i % 3 == 0 ? random.in_box(splat(-1000), splat(1000)) : Vec3{};
+    const auto corner = [&] { return shift + random.in_box(splat(-1), splat(1)) * size; };
+    Triangle t{corner(), corner(), corner()};
+    if (i % 5 == 0) t.b.z = t.c.z = t.a.z;
+    if (i % 7 == 0) t.c = t.a;
+    std::vector<Box3> regions{t.box()};
+    for (int cut = 0; cut < 5; ++cut) {
+      const Box3 region = regions[random.below(std::uint32_t(regions.size()))];
+      const int axis = int(random.below(3));
+      Box3 below = region, above = region;
+      below.upper[axis] = above.lower[axis] =
+          region.lower[axis] + (region.upper[axis] - region.lower[axis]) * random.uniform();
+      std::erase(regions, region);
+      regions.push_back(below);
+      regions.push_back(above);
+    }
+    std::vector<Box3> parts;
+    for (const Box3& region : regions) {
+      parts.push_back(t.clipped_box(region));
+      EXPECT_TRUE(region.contains(parts.back()) && t.box().contains(parts.back()));
+    }
+    for (const Vec3 vertex : {t.a, t.b, t.c})
+      EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), [&](const Box3& p) { return p.contains(vertex); }));
+    for (int k = 0; k < 30; ++k) {
+      double u = random.uniform(), v = random.uniform();
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (k % 3 == 0) v = 0;
+      const auto at = [&](int axis) {
+        return t.a[axis] + u * (double(t.b[axis]) - t.a[axis]) + v * (double(t.c[axis]) - t.a[axis]);
+      };
+      EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), [&](const Box3& p) {
+        // What is looked for is rounded itself.
+        const double slack = 1e-14 * (1000 + size);
+        for (int axis = 0; axis < 3; ++axis)
+          if (!(p.lower[axis] <= at(axis) + slack && at(axis) - slack <= p.upper[axis])) return false;
+        return true;
+      }));
+    }
+  }
+}
+
+TEST(Triangle, PartsAreTight) {
+  const Triangle t{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+  const Box3 part = t.clipped_box({{0.5f, -1, -1}, {2, 2, 2}});
+  EXPECT_EQ(part.lower.x, 0.5f);
+  EXPECT_EQ(part.upper.x, 1);
+  EXPECT_EQ(part.lower.y, 0);
+  EXPECT_NEAR(part.upper.y, 0.5f, 1e-6f);
+  EXPECT_NEAR(part.upper.z, 0.5f, 1e-6f);
+  EXPECT_TRUE(t.clipped_box({{0.6f, 0.6f, 0}, {2, 2, 2}}).is_empty());
+  EXPECT_TRUE(t.clipped_box(Box3{}).is_empty());
+  EXPECT_EQ(t.clipped_box({splat(-5), splat(5)}), t.box());
+}
+
 }  // namespace
 }  // namespace boxwood

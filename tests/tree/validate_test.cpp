@@ -148,6 +148,30 @@ TEST(Validate, SaysWhenATreeIsTooDeep) {
   }
 }
 
+TEST(Validate, PartsOfPrimitivesMayRepeat) {
+  // Primitive 0 stands in both leaves.
+  Bvh bvh;
+  bvh.prim_ids = {PrimId(0), PrimId(1), PrimId(0)};
+  bvh.nodes = {
+      {{{0, 0, 0}, {4, 1, 1}}, 1, 0}, {{{0, 0, 0}, {2, 1, 1}}, 0, 2}, {{{2, 0, 0}, {4, 1, 1}}, 2, 1}};
+  std::vector<Box3> boxes{{{0, 0, 0}, {4, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
+  EXPECT_NE(validate(bvh, boxes), "");
+  EXPECT_EQ(validate(bvh, boxes, Repeats::allowed), "");
+
+  boxes[0].upper.x = 5;
+  EXPECT_EQ(validate(bvh, boxes, Repeats::allowed),
+            "the leaves of primitive 0 do not reach as far as its box");
+  boxes[0].upper.x = 4;
+  bvh.prim_ids[1] = PrimId(0);
+  EXPECT_EQ(validate(bvh, boxes, Repeats::allowed), "node 1 is a leaf with primitive 0 twice");
+  bvh.prim_ids[0] = PrimId(2);
+  EXPECT_EQ(validate(bvh, boxes, Repeats::allowed),
+            "position 0 of prim_ids names primitive 2, but there are 2");
+  bvh.prim_ids = {PrimId(0), PrimId(0), PrimId(0)};
+  bvh.nodes[1].count = 1;
+  EXPECT_EQ(validate(bvh, boxes, Repeats::allowed), "no leaf owns position 1 of prim_ids");
+}
+
 TEST(Validate, SurvivesGarbage) {
   Random random(9);
   for (int round = 0; round < 20'000; ++round) {

@@ -22,6 +22,10 @@ constexpr std::size_t kBlock = 1 << 13;
 
 }  // namespace
 
+void check_box(std::span<const Box3> boxes, std::size_t i) {
+  if (!(is_finite(boxes[i].lower) && is_finite(boxes[i].upper)) && boxes[i] != Box3{}) refuse(boxes, i);
+}
+
 Items collect_items(std::span<const Box3> boxes, Executor& executor) {
   Items items;
   items.full = RawArray<Item>(boxes.size());
@@ -48,7 +52,7 @@ Items collect_items(std::span<const Box3> boxes, Executor& executor) {
   if (std::find(is_odd.begin(), is_odd.end(), 1) != is_odd.end()) {
     std::size_t full = 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (!(is_finite(boxes[i].lower) && is_finite(boxes[i].upper)) && boxes[i] != Box3{}) refuse(boxes, i);
+      check_box(boxes, i);
       if (boxes[i].is_empty())
         items.empty_boxes.push_back(PrimId(i));
       else

@@ -106,6 +106,9 @@ struct Items {
   Bounds bounds;                    ///< Of the full ones.
 };
 
+/// Throws std::invalid_argument, naming it, when boxes[i] is neither finite nor the empty box.
+void check_box(std::span<const Box3> boxes, std::size_t i);
+
 /// Throws std::invalid_argument, naming the first one, when a box is neither finite nor the empty box.
 Items collect_items(std::span<const Box3> boxes, Executor& executor);
 

@@ -26,6 +26,8 @@ struct BuildOptions {
   /// nodes, 0 to 1 (reinsertion.h).
   int reinsertion_rounds = 0;
   float reinsertion_share = 0.003f;
+  /// With a clip function: at most so many cuts for each primitive on average, 0 to 4 (spatial_split.h).
+  float split_share = 0;
   /// Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
   Executor* executor = nullptr;
   Progress progress;  ///< Told now and then; returning false throws Cancelled. May be empty.

@@ -34,6 +34,45 @@ Vec3 Triangle::closest_point(Vec3 p) const {
   return narrow(best);
 }
 
+Box3 Triangle::clipped_box(const Box3& region) const {
+  if (region.is_empty() || !box().overlaps(region)) return {};
+
+  // Everything here is rounded by much less than this; planes are moved outwards by it, and so is the result.
+  const Box3 own = box();
+  const double slack = 1e-14 * double(std::max(max_component(abs(own.lower)), max_component(abs(own.upper))));
+  const auto component = [](const Vec3d& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; };
+
+  // Cut by the six planes in turn; each adds at most one corner.
+  Vec3d corners[9] = {widen(a), widen(b), widen(c)}, kept[9];
+  int count = 3;
+  for (int plane = 0; plane < 6; ++plane) {
+    const int axis = plane / 2;
+    const double sign = plane % 2 == 0 ? 1 : -1;
+    const double place = sign * double(sign > 0 ? region.lower[axis] : region.upper[axis]) - slack;
+    const auto height = [&](const Vec3d& p) { return sign * component(p, axis) - place; };
+    int kept_count = 0;
+    for (int i = 0; i < count; ++i) {
+      const Vec3d from = corners[i], to = corners[(i + 1) % count];
+      const double h0 = height(from), h1 = height(to);
+      if (h0 >= 0) kept[kept_count++] = from;
+      if ((h0 >= 0) != (h1 >= 0)) kept[kept_count++] = from + (to - from) * (h0 / (h0 - h1));
+    }
+    std::copy(kept, kept + kept_count, corners);
+    count = kept_count;
+  }
+
+  Box3 found;
+  const auto down = [&](double x) { return std::nextafter(static_cast<float>(x - slack), -kInfinity); };
+  const auto up = [&](double x) { return std::nextafter(static_cast<float>(x + slack), kInfinity); };
+  for (int i = 0; i < count; ++i) {
+    const Vec3d& p = corners[i];
+    found.extend(Box3{{down(p.x), down(p.y), down(p.z)}, {up(p.x), up(p.y), up(p.z)}});
+  }
+  // The triangle's own box is exact.
+  const Box3 inside = boxwood::intersect(found, boxwood::intersect(own, region));
+  return inside.is_empty() ? Box3{} : inside;
+}
+
 bool Triangle::overlaps(const Box3& box) const {
   if (box.is_empty() || !this->box().overlaps(box)) return false;  // the three axes of the box
 

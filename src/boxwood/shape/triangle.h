@@ -133,6 +133,11 @@ struct Triangle {
   /// section 5.1.5, which saves work by regions but fails where two vertices coincide.
   Vec3 closest_point(Vec3 p) const;
 
+  /// The box of the part inside `region`, rounded outwards but no larger than the region: boxes of the parts
+  /// in regions that cover a triangle, cover the triangle. The empty box where there is no such part.
+  /// Sutherland and Hodgman, "Reentrant Polygon Clipping", CACM 1974, in double.
+  Box3 clipped_box(const Box3& region) const;
+
   /// The separating axis test of Akenine-Moeller, "Fast 3D Triangle-Box Overlap Testing", 2001, in double.
   bool overlaps(const Box3& box) const;
 };

@@ -87,10 +87,40 @@ std::string check_boxes(const Bvh& bvh, std::span<const Box3> boxes) {
   return "";
 }
 
+/// Invariants 4 and 5 where primitives may repeat.
+std::string check_parts(const Bvh& bvh, std::span<const Box3> boxes) {
+  std::vector<Box3> covered(boxes.size());
+  std::vector<std::size_t> seen_in(boxes.size(), bvh.nodes.size());
+  for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
+    const BvhNode& node = bvh.nodes[i];
+    if (!node.is_leaf()) {
+      for (const std::uint32_t child : {node.first_index, node.first_index + 1})
+        if (!node.box.contains(bvh.nodes[child].box))
+          return node_text(i) + " has a box that does not hold the box of its child, node " + text(child);
+      continue;
+    }
+    for (std::uint32_t k = 0; k < node.count; ++k) {
+      const std::uint32_t prim = bvh.prim_ids[node.first_index + k].value;
+      if (prim >= boxes.size())
+        return "position " + text(node.first_index + k) + " of prim_ids names primitive " + text(prim) +
+               ", but there are " + text(boxes.size());
+      if (seen_in[prim] == i) return node_text(i) + " is a leaf with primitive " + text(prim) + " twice";
+      seen_in[prim] = i;
+      covered[prim].extend(node.box);
+    }
+  }
+  for (std::size_t prim = 0; prim < boxes.size(); ++prim) {
+    if (seen_in[prim] == bvh.nodes.size()) return "no leaf has primitive " + text(prim);
+    if (!covered[prim].contains(boxes[prim]))
+      return "the leaves of primitive " + text(prim) + " do not reach as far as its box";
+  }
+  return "";
+}
+
 }  // namespace
 
-std::string validate(const Bvh& bvh, std::span<const Box3> boxes) {
-  if (bvh.prim_ids.size() != boxes.size())
+std::string validate(const Bvh& bvh, std::span<const Box3> boxes, Repeats repeats) {
+  if (repeats == Repeats::allowed ? bvh.prim_ids.size() < boxes.size() : bvh.prim_ids.size() != boxes.size())
     return "prim_ids has " + text(bvh.prim_ids.size()) + " entries for " + text(boxes.size()) + " primitives";
   if (bvh.nodes.empty() != boxes.empty())
     return "there are " + text(bvh.nodes.size()) + " nodes for " + text(boxes.size()) + " primitives";
@@ -98,6 +128,7 @@ std::string validate(const Bvh& bvh, std::span<const Box3> boxes) {
 
   // Boxes are looked at last: only then is it safe to follow indices.
   std::string broken = check_links(bvh);
+  if (repeats == Repeats::allowed) return broken.empty() ? check_parts(bvh, boxes) : broken;
   if (broken.empty()) broken = check_primitives(bvh);
   if (broken.empty()) broken = check_boxes(bvh, boxes);
   return broken;
