@@ -49,9 +49,10 @@ struct OpenBlock {
 template <bool kAny, class Output>
 class Interleaved {
  public:
-  Interleaved(const char* pool, const Box3& bounds, std::span<const Ray> rays, const Output& output,
-              std::vector<std::uint32_t>& unusual)
-      : pool_(pool), bounds_(bounds), rays_(rays), output_(output), unusual_(unusual) {}
+  /// Traces rays[i] for each i of `order`.
+  Interleaved(const char* pool, const Box3& bounds, const Ray* rays, std::span<const std::uint32_t> order,
+              const Output& output, std::vector<std::uint32_t>& unusual)
+      : pool_(pool), bounds_(bounds), rays_(rays), order_(order), output_(output), unusual_(unusual) {}
 
   void run(RayInFlight* flight) {
     List nodes{lists_[kNode]}, leaves{lists_[kLeaf]}, done{lists_[kDone]};
@@ -104,15 +105,15 @@ class Interleaved {
 
   /// Gives the place to the next ray that is ordinary; false when there is none left.
   HWY_INLINE bool start(RayInFlight& place) {
-    while (next_ < rays_.size()) {
-      const std::size_t i = next_++;
+    while (next_ < order_.size()) {
+      const std::uint32_t i = order_[next_++];
       if (HWY_UNLIKELY(!prepare(rays_[i], bounds_, place.ray))) {
-        unusual_.push_back(static_cast<std::uint32_t>(i));
+        unusual_.push_back(i);
         continue;
       }
       place.hit.t = rays_[i].t_max + 0.0f;
       place.hit.key = place.hit.block = TriangleHit::kNone;
-      place.ray_index = static_cast<std::uint32_t>(i);
+      place.ray_index = i;
       place.refs[0] = static_cast<std::int32_t>(kBottom);
       place.keys[0] = 0;
       place.refs[1] = 0;
@@ -185,37 +186,14 @@ class Interleaved {
 
   const char* pool_;
   const Box3& bounds_;
-  std::span<const Ray> rays_;
+  const Ray* rays_;
+  std::span<const std::uint32_t> order_;
   const Output& output_;
   std::vector<std::uint32_t>& unusual_;
   std::size_t next_ = 0;
   RayInFlight* lists_[3][kInFlight + 1];
   OpenBlock open_[kInFlight * kMaxLeafBlocks + 1];
 };
-
-/// Calls output(i, hit) for each ordinary ray, in no order; `unusual` gets the indices of the others.
-template <bool kAny, class Output>
-void trace_interleaved(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
-                       const Output& output, std::vector<std::uint32_t>& unusual) {
-  if (tree.max_stack() + kWidth <= kShortStack) {
-    static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
-    return Interleaved<kAny, Output>(tree.pool(), bounds, rays, output, unusual).run(flight.get());
-  }
-  for (std::uint32_t i = 0; i < rays.size(); ++i) {
-    KernelRay ray;
-    if (!prepare(rays[i], bounds, ray)) {
-      unusual.push_back(i);
-      continue;
-    }
-    TriangleHit hit{rays[i].t_max + 0.0f};
-    if constexpr (kAny) {
-      if (any_hit_one(tree.pool(), ray, hit.t)) hit.block = 0;
-    } else {
-      closest_hit_one(tree.pool(), ray, hit);
-    }
-    output(i, hit);
-  }
-}
 
 }  // namespace boxwood::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

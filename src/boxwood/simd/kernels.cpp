@@ -7,8 +7,7 @@
 // foreach_target.h comes first
 #include <hwy/highway.h>
 
-#include "boxwood/simd/interleave-inl.h"
-#include "boxwood/simd/single-inl.h"
+#include "boxwood/simd/batch-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
@@ -42,13 +41,13 @@ void closest_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box
     hits[i] = hit;
     if (!hit.is_hit()) hits[i].t = kInfinity;
   };
-  trace_interleaved<false>(tree, rays, bounds, output, unusual);
+  trace_batch<false>(tree, rays, bounds, output, unusual);
 }
 
 void any_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
               std::vector<std::uint32_t>& unusual) {
   const auto output = [&](std::uint32_t i, const TriangleHit& hit) { hits[i] = hit.is_hit(); };
-  trace_interleaved<true>(tree, rays, bounds, output, unusual);
+  trace_batch<true>(tree, rays, bounds, output, unusual);
 }
 
 constexpr std::string_view target_name() {

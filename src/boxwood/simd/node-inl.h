@@ -98,6 +98,15 @@ HWY_INLINE hn::Vec<D> sort_eight_descending(D d, hn::Vec<D> keys) {
   return by_one(keys, hn::Shuffle2301(keys));
 }
 
+/// Sorts the keys of all children, the largest first.
+template <class D>
+HWY_INLINE hn::Vec<D> sort_all_descending(D d, hn::Vec<D> keys) {
+  if constexpr (kWidth == 4)
+    return sort_descending(keys);
+  else
+    return sort_eight_descending(d, keys);
+}
+
 HWY_INLINE void prefetch_lines(const char* p) {
   __builtin_prefetch(p);
   __builtin_prefetch(p + 64);

@@ -1,0 +1,70 @@
+// batch-inl.h: how are many rays answered best? Compiled once for each instruction set.
+//
+// Rays that go the same way go as a bundle, all others take turns; where a tree is too deep for that, one
+// after the other.
+
+#if defined(BOXWOOD_SIMD_BATCH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXWOOD_SIMD_BATCH_INL_H
+#undef BOXWOOD_SIMD_BATCH_INL_H
+#else
+#define BOXWOOD_SIMD_BATCH_INL_H
+#endif
+
+#include "boxwood/simd/bundle-inl.h"
+#include "boxwood/simd/interleave-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::simd::HWY_NAMESPACE {
+
+/// Calls output(i, hit) for each ordinary ray, in no order; `unusual` gets the indices of the others.
+template <bool kAny, class Output>
+void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
+                 const Output& output, std::vector<std::uint32_t>& unusual) {
+  const char* pool = tree.pool();
+  constexpr std::size_t kAtOnce = 4096;
+  HWY_ALIGN std::uint32_t order[kAtOnce];
+  for (std::size_t begin = 0; begin < rays.size(); begin += kAtOnce) {
+    // Trace bundles; note the rest.
+    const std::size_t end = std::min(rays.size(), begin + kAtOnce);
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end;) {
+      const std::size_t group = std::min(end - i, std::size_t(kBundle));
+      Bundle<kAny> bundle;
+      if (group == kBundle && may_be_bundle(&rays[i]) && bundle.prepare(&rays[i], bounds)) {
+        bundle.trace(pool);
+        bundle.finish(
+            [&](std::uint32_t k, const TriangleHit& hit) { output(static_cast<std::uint32_t>(i) + k, hit); });
+      } else {
+        for (std::size_t k = 0; k < group; ++k) order[count++] = static_cast<std::uint32_t>(i + k);
+      }
+      i += group;
+    }
+
+    // The rest takes turns.
+    const std::span<const std::uint32_t> rest(order, count);
+    if (tree.max_stack() + kWidth <= kShortStack) {
+      static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
+      Interleaved<kAny, Output>(pool, bounds, rays.data(), rest, output, unusual).run(flight.get());
+      continue;
+    }
+    for (const std::uint32_t i : rest) {
+      KernelRay ray;
+      if (!prepare(rays[i], bounds, ray)) {
+        unusual.push_back(i);
+        continue;
+      }
+      TriangleHit hit{rays[i].t_max + 0.0f};
+      if constexpr (kAny) {
+        if (any_hit_one(pool, ray, hit.t)) hit.block = 0;
+      } else {
+        closest_hit_one(pool, ray, hit);
+      }
+      output(i, hit);
+    }
+  }
+}
+
+}  // namespace boxwood::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
