@@ -120,6 +120,7 @@ Bvh build(std::span<const Box3> boxes, const Clip& clip, const BuildOptions& opt
 
   // Whether pieces pay is known only from trees, quick ones will do: in a room of large walls they do not.
   const Pieces pieces = split_spatially(boxes, clip, options.split_share, executor);
+  if (pieces.boxes.size() - boxes.size() < boxes.size() / 100) return build(boxes, options);
   BuildOptions part = options;
   part.method = Method::ploc;
   part.reinsertion_rounds = 0;

@@ -25,6 +25,7 @@ class Splitter {
   Splitter(const Box3& bounds, const Clip& clip) : bounds_(bounds), clip_(clip) {
     const Vec3 half = bounds.upper * 0.5f - bounds.lower * 0.5f;
     size_ = 2.0 * double(max_component(half));
+    cells_per_length_ = size_ > 0 ? kCells / size_ : 0;
   }
 
   /// The plane of the highest level that cuts the box; of several, the one across its longest side.
@@ -78,7 +79,8 @@ class Splitter {
 
  private:
   double priority(const Plane& plane, double spared) const {
-    return spared > 0 ? std::cbrt(spared / (size_ * size_) * std::ldexp(1.0, plane.level - 20)) : 0;
+    const double share_of_scene = spared / (size_ * size_) * (double(1u << plane.level) / kCells);
+    return spared > 0 ? std::cbrt(static_cast<float>(share_of_scene)) : 0;
   }
   /// The half area without the largest side: what a box has beyond a flat one. Walls and floors fill their
   /// boxes as well as anything does, and their pieces would only swell the nodes of what stands before them.
@@ -90,7 +92,7 @@ class Splitter {
   }
   static double longest_side(const Box3& box) { return max_component(box.upper * 0.5f - box.lower * 0.5f); }
   std::uint32_t cell(float x, int axis) const {
-    const double place = (double(x) - bounds_.lower[axis]) / size_ * kCells;
+    const double place = (double(x) - bounds_.lower[axis]) * cells_per_length_;
     return place > 0 ? std::min(kCells - 1, static_cast<std::uint32_t>(place)) : 0;
   }
   void cut(PrimId id, const Box3& box, const Plane& plane, Box3& left, Box3& right) const {
@@ -102,7 +104,7 @@ class Splitter {
 
   const Box3 bounds_;
   const Clip& clip_;
-  double size_;
+  double size_, cells_per_length_;
 };
 
 }  // namespace

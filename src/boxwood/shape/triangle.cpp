@@ -47,6 +47,9 @@ Box3 Triangle::clipped_box(const Box3& region) const {
   int count = 3;
   for (int plane = 0; plane < 6; ++plane) {
     const int axis = plane / 2;
+    // Most planes have the whole triangle inside.
+    if (plane % 2 == 0 ? own.lower[axis] >= region.lower[axis] : own.upper[axis] <= region.upper[axis])
+      continue;
     const double sign = plane % 2 == 0 ? 1 : -1;
     const double place = sign * double(sign > 0 ? region.lower[axis] : region.upper[axis]) - slack;
     const auto height = [&](const Vec3d& p) { return sign * component(p, axis) - place; };
