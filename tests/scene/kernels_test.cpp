@@ -1,0 +1,268 @@
+// Scenes that are answered by kernels: batches and single rays, unusual rays, tiny and huge scenes, and many
+// triangles in one place. tests/CMakeLists.txt runs all of this with each set of kernels.
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "boxwood/core/random.h"
+#include "boxwood/gallery/gallery.h"
+#include "boxwood/simd/validate.h"
+#include "scene/scene_oracle.h"
+
+namespace boxwood {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Rays through `bounds` from inside and outside, with all kinds of odd ones among them.
+std::vector<Ray> mixed_rays(const Box3& bounds, std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  const float size = length(bounds.extent());
+  std::vector<Ray> rays(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Ray& ray = rays[i];
+    const Vec3 inside = random.in_box(bounds.lower, bounds.upper);
+    ray.origin = i % 2 ? inside : bounds.center() + random.direction() * size;
+    ray.direction = i % 2 ? random.direction() : inside - ray.origin;
+    const int axis = static_cast<int>(random.below(3));
+    switch (random.below(40)) {
+      case 0:
+        ray.origin[axis] = kNan;
+        break;
+      case 1:
+        ray.direction[axis] = kNan;
+        break;
+      case 2:
+        ray.t_min = kNan;
+        break;
+      case 3:
+        ray.t_max = kNan;
+        break;
+      case 4:
+        ray.origin[axis] = random.below(2) ? kInfinity : -kInfinity;
+        break;
+      case 5:
+        ray.direction[axis] = kInfinity;
+        break;
+      case 6:
+        ray.direction = {0, random.below(2) ? 0.0f : -0.0f, 0};
+        break;
+      case 7:
+        std::swap(ray.t_min, ray.t_max);
+        break;
+      case 8:  // from very far: hits at a huge t, through floats that overflow in a kernel
+        ray.direction = normalize(inside - ray.origin);
+        ray.origin = inside - ray.direction * 0x1p60f;
+        break;
+      case 9:
+        ray.direction = ray.direction * 0x1p-60f;
+        break;
+      case 10:
+        ray.direction = ray.direction * 0x1p60f;
+        break;
+      case 11:
+        ray.direction = ray.direction * 0x1p-140f;
+        break;
+      case 12:
+        ray.origin = ray.origin * 0x1p-140f;
+        break;
+      case 13:
+        ray.direction[axis] = 0;
+        break;
+      case 14:
+        ray.direction = {0, 0, 0};
+        ray.direction[axis] = -1;
+        break;
+      case 15:
+        ray.t_min = -1;
+        break;
+      case 16:
+        ray.t_max = size * random.uniform();
+        break;
+      case 17:
+        ray.t_max = 0;
+        break;
+      case 18:
+        ray.direction[axis] = ray.direction[axis] * 0x1p-40f;
+        break;
+      default:
+        break;
+    }
+  }
+  return rays;
+}
+
+/// Single rays against a search without trees, where `expect_oracle`; batches of many sizes, lists and counts
+/// against single rays. Returns how many rays hit.
+std::size_t check_all(const Scene& scene, const std::vector<Ray>& rays, bool expect_oracle) {
+  std::vector<Hit> single(rays.size()), all;
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    single[i] = scene.closest_hit(rays[i]);
+    hits += single[i].is_hit();
+    EXPECT_EQ(scene.any_hit(rays[i]), single[i].is_hit()) << "ray " << i;
+    scene.all_hits(rays[i], all);
+    EXPECT_EQ(scene.count_hits(rays[i]), all.size()) << "ray " << i;
+    EXPECT_EQ(all.empty() ? Hit{} : all[0], single[i]) << "ray " << i;
+    TraversalStatistics statistics;
+    EXPECT_EQ(scene.closest_hit(rays[i], statistics), single[i]) << "ray " << i;
+    if (expect_oracle) {
+      const std::vector<Hit> expected = test::all_hits_without_trees(scene, rays[i]);
+      EXPECT_EQ(all.size(), expected.size()) << "ray " << i;
+      for (std::size_t k = 0; k < std::min(all.size(), expected.size()); ++k) {
+        all[k].normal = {};
+        EXPECT_EQ(all[k], expected[k]) << "ray " << i;
+      }
+    }
+    if (testing::Test::HasFailure()) return hits;
+  }
+
+  const auto two = make_executor(2);
+  std::vector<Hit> batch(rays.size());
+  const std::unique_ptr<bool[]> is_hit(new bool[rays.size()]);
+  for (const std::size_t size : {std::size_t(1), std::size_t(7), std::size_t(700), rays.size()})
+    for (Executor* executor : {&serial_executor(), two.get()}) {
+      batch.assign(rays.size(), Hit{});
+      for (std::size_t begin = 0; begin < rays.size(); begin += size) {
+        const std::size_t count = std::min(size, rays.size() - begin);
+        scene.closest_hit(std::span(rays).subspan(begin, count), std::span(batch).subspan(begin, count),
+                          executor);
+        scene.any_hit(std::span(rays).subspan(begin, count), std::span(&is_hit[begin], count), executor);
+      }
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        EXPECT_EQ(batch[i], single[i]) << "ray " << i << " in batches of " << size;
+        EXPECT_EQ(is_hit[i], single[i].is_hit()) << "ray " << i << " in batches of " << size;
+        if (testing::Test::HasFailure()) return hits;
+      }
+    }
+  return hits;
+}
+
+class KernelScenes : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(KernelScenes, BatchesEqualSingleRaysAndListsCount) {
+  const Scene scene(gallery::make(GetParam()));
+  EXPECT_GT(check_all(scene, mixed_rays(scene.bounds(), 3'000, 1), false), 300u);
+}
+
+TEST_P(KernelScenes, AnswerUnusualRaysAsIfTheyHadNoTrees) {
+  const Scene scene(gallery::make(GetParam()));
+  EXPECT_GT(check_all(scene, mixed_rays(scene.bounds(), 200, 2), true), 20u);
+}
+
+TEST_P(KernelScenes, HoldValidTreesAndNothingTwice) {
+  const Scene scene(gallery::make(GetParam()));
+  const Part& world = scene.parts().world;
+  EXPECT_EQ(simd::validate(world.triangles), "");
+  std::size_t bytes = 0;
+  const auto add = [&bytes](const Part& part) {
+    bytes += part.triangles.size_bytes() + part.shape_bvh.size_bytes() +
+             part.shapes.size() * sizeof(LeafShape) + part.meshes.size() * sizeof(PartMesh);
+  };
+  add(world);
+  for (const Part& object : scene.parts().objects) add(object);
+  bytes += scene.parts().top_level.size_bytes() + scene.parts().placements.size() * sizeof(Placement);
+  const SceneStatistics statistics = scene.statistics();
+  EXPECT_EQ(statistics.tree_bytes + statistics.geometry_bytes, bytes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Gallery, KernelScenes,
+                         ::testing::Values("stilllife", "spheres:2000", "soup:5000", "terrain:32", "cornell",
+                                           "city:500", "duplicates:300"));
+
+TriangleMesh scaled_soup(float scale) {
+  Random random(6);
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    const Vec3 center = random.in_box(splat(-1), splat(1));
+    for (int k = 0; k < 3; ++k) mesh.positions.push_back((center + random.direction() * 0.2f) * scale);
+    mesh.indices.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
+TEST(KernelSizes, TinyAndHugeScenes) {
+  for (const float scale : {1e-30f, 1e-20f, 1e-10f, 1.0f, 6e10f, 8e10f, 1e20f, 1e30f, 0x1p125f}) {
+    SceneDesc desc;
+    desc.add(scaled_soup(scale));
+    const Scene scene(std::move(desc));
+    std::vector<Ray> rays = mixed_rays(scene.bounds(), 500, 3);
+    for (Ray& ray : rays) {  // a direction out of range is a miss: not what this test is about
+      const float d = max_component(abs(ray.direction));
+      if (d > 0 && std::isfinite(d) && (d < 0x1p-96f || d > 0x1p96f)) ray.direction = ray.direction / d;
+    }
+    EXPECT_GT(check_all(scene, rays, true), 50u) << scale;
+  }
+}
+
+TEST(KernelSizes, MeshesOfVeryDifferentSizeInOneScene) {
+  SceneDesc desc;
+  for (const float scale : {1e-6f, 1.0f, 1e4f, 1e9f}) desc.add(scaled_soup(scale));
+  const Scene scene(std::move(desc));
+  EXPECT_GT(check_all(scene, mixed_rays({splat(-2), splat(2)}, 1000, 4), true), 100u);
+  EXPECT_GT(check_all(scene, mixed_rays(scene.bounds(), 500, 5), true), 50u);
+}
+
+TEST(KernelSizes, OneTriangle) {
+  SceneDesc desc;
+  desc.add(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, {}});
+  const Scene scene(std::move(desc));
+  const Hit hit = scene.closest_hit({{0.25f, 0.5f, -2}, 0, {0, 0, 1}});
+  EXPECT_EQ(hit.t, 2);
+  EXPECT_EQ(hit.u, 0.25f);
+  EXPECT_EQ(hit.v, 0.5f);
+  EXPECT_EQ(hit.normal, (Vec3{0, 0, 1}));
+  EXPECT_EQ(hit.primitive_id, PrimId(0));
+  EXPECT_GT(check_all(scene, mixed_rays({{0, 0, -1}, {1, 1, 1}}, 2000, 6), true), 100u);
+}
+
+TEST(KernelSizes, TiesGoToTheFirstOfManyMeshesInOnePlace) {
+  // Each mesh is placed twice in the world, the last first.
+  SceneDesc desc;
+  const TriangleMesh square{{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
+  for (int i = 0; i < 9; ++i) desc.add(square);
+  for (int round = 0; round < 2; ++round)
+    for (int i = 9; i-- > 0;)
+      desc.add(Instance{GeometryId(static_cast<std::uint64_t>(i)), Affine3::identity(), {}});
+  const Scene scene(std::move(desc));
+  const Hit hit = scene.closest_hit({{0.3f, 1, 0.6f}, 0, {0, -1, 0}});
+  EXPECT_EQ(hit.instance_id, InstanceId(0));
+  EXPECT_EQ(hit.geometry_id, GeometryId(8));
+  EXPECT_EQ(hit.primitive_id, PrimId(1));
+  EXPECT_EQ(scene.count_hits({{0.3f, 1, 0.6f}, 0, {0, -1, 0}}), 18u);
+  EXPECT_GT(check_all(scene, mixed_rays({{-1, -1, -1}, {1, 1, 1}}, 1000, 7), true), 100u);
+}
+
+/// One triangle `count` times: the first is hit, all are counted.
+void check_copies(std::uint32_t count) {
+  SceneDesc desc;
+  desc.add(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                        std::vector<std::array<std::uint32_t, 3>>(count, {0, 1, 2}),
+                        {},
+                        {}});
+  const Scene scene(std::move(desc));
+  const Ray through{{0.25f, 0.25f, -1}, 0, {0, 0, 1}}, beside{{0.75f, 0.75f, -1}, 0, {0, 0, 1}};
+  const Hit hit = scene.closest_hit(through);
+  EXPECT_EQ(hit.t, 1);
+  EXPECT_EQ(hit.primitive_id, PrimId(0));
+  EXPECT_EQ(scene.count_hits(through), count);
+  EXPECT_TRUE(scene.any_hit(through));
+  EXPECT_FALSE(scene.any_hit(beside));
+  const std::vector<Ray> rays{through, beside, through};
+  std::vector<Hit> hits(3);
+  scene.closest_hit(rays, hits);
+  EXPECT_EQ(hits[0], hit);
+  EXPECT_EQ(hits[1], Hit{});
+  EXPECT_EQ(hits[2], hit);
+}
+
+TEST(KernelSizes, ManyCopiesOfOneTriangle) {
+  check_copies(100'000);
+  const char* is_long = std::getenv("BOXWOOD_LONG_TESTS");
+  if (is_long && *is_long == '1') check_copies(1u << 24);
+}
+
+}  // namespace
+}  // namespace boxwood
