@@ -111,7 +111,9 @@ inline bool is_finite(Vec3 a) {
 }
 /// 0, 1 or 2: the axis of the largest component; the first one when equal.
 constexpr int longest_axis(Vec3 a) {
-  return a.x >= a.y ? (a.x >= a.z ? 0 : 2) : (a.y >= a.z ? 1 : 2);
+  // Without a branch: on directions of rays it would be hard to foresee.
+  const int is_z = (a.z > a.x) & (a.z > a.y), is_y = a.y > a.x;
+  return is_z << 1 | (is_y & ~is_z);
 }
 
 /// Two unit vectors that form a right-handed orthonormal basis with the unit vector `n`.

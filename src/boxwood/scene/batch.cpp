@@ -59,13 +59,30 @@ class Scratch {
   Buffers buffers_;
 };
 
-/// Asks for the blocks of a hit some turns before it is worked out.
-void prefetch(const simd::TriangleTree& triangles, const simd::TriangleHit& hit) {
-  if (!hit.is_hit()) return;
-  const char* block = reinterpret_cast<const char*>(&triangles.block_at(hit.block));
-  __builtin_prefetch(block);
-  __builtin_prefetch(block + 64);
-  __builtin_prefetch(block + 128);
+/// Works out the answers for a scene of triangles only.
+void finish_triangles(const Scene::Parts& parts, std::span<const Ray> rays, const simd::TriangleHit* found,
+                      Hit* hits) {
+  // A few at a time, so that they are still in the nearest cache when they get their ids.
+  constexpr std::size_t kStep = 128;
+  for (std::size_t begin = 0; begin < rays.size(); begin += kStep) {
+    const std::size_t end = std::min(begin + kStep, rays.size());
+    parts.kernels->finish_hits(parts.world.triangles, rays.subspan(begin, end - begin), found + begin,
+                               hits + begin);
+    // Without a branch: who hits and who does not is hard to foresee.
+    const auto name = [&](std::size_t i, const PartMesh& mesh) {
+      const std::uint32_t none = 0u - static_cast<std::uint32_t>(!found[i].is_hit());
+      hits[i].instance_id = InstanceId(mesh.instance_id.value | none);
+      hits[i].geometry_id = GeometryId(mesh.geometry_id.value | none);
+      hits[i].primitive_id = PrimId((found[i].key - mesh.first_key) | none);
+    };
+    const std::vector<PartMesh>& meshes = parts.world.meshes;
+    if (meshes.size() == 1) {
+      const PartMesh only = meshes[0];
+      for (std::size_t i = begin; i < end; ++i) name(i, only);
+    } else {
+      for (std::size_t i = begin; i < end; ++i) name(i, parts.world.mesh_of(found[i].key));
+    }
+  }
 }
 
 }  // namespace
@@ -84,21 +101,15 @@ void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor
     std::vector<std::uint32_t>& unusual = scratch.unusual();
     const std::size_t count = end - begin;
     parts.kernels->closest_hits(triangles, rays.subspan(begin, count), parts.bounds, found, unusual);
-    std::sort(unusual.begin(), unusual.end());
     for (const std::uint32_t i : unusual) found[i] = {};
-
-    constexpr std::size_t kAhead = 8;
-    auto next_unusual = unusual.begin();
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i + kAhead < count) prefetch(triangles, found[i + kAhead]);
-      if (next_unusual != unusual.end() && *next_unusual == i) {
-        NoStatistics none;
-        hits[begin + i] = detail::walk_closest(parts, rays[begin + i], none);
-        ++next_unusual;
-      } else {
-        hits[begin + i] = detail::finish_closest(parts, rays[begin + i], found[i]);
-      }
-    }
+    if (parts.is_only_triangles)
+      finish_triangles(parts, rays.subspan(begin, count), found, &hits[begin]);
+    else
+      for (std::size_t i = 0; i < count; ++i)
+        hits[begin + i] = detail::add_others(parts, rays[begin + i], found[i]);
+    NoStatistics none;
+    for (const std::uint32_t i : unusual)
+      hits[begin + i] = detail::walk_closest(parts, rays[begin + i], none);
   });
 }
 

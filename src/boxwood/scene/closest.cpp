@@ -72,6 +72,7 @@ void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit) {
 Hit add_others(const Scene::Parts& parts, const Ray& ray, const simd::TriangleHit& triangle) {
   // Begin with the triangle, as if the walk had met it first.
   const PreparedRay prepared(ray, parts.bounds);
+  if (!prepared.is_valid()) return {};
   ClosestSink sink{prepared.t_max};
   Hit on_triangle;
   if (triangle.is_hit()) {

@@ -24,9 +24,20 @@ inline Hit make_hit(const Scene::Parts& parts, const Crossing& crossing, Instanc
 
 /// The hit on a triangle of the world. Precondition: found.is_hit().
 inline Hit finish_triangle(const Scene::Parts& parts, const Ray& ray, const simd::TriangleHit& found) {
-  const Triangle triangle = parts.world.triangles.block_at(found.block).triangle(found.lane);
+  const simd::TriangleBlock& block = parts.world.triangles.block_at(found.block);
+  const Triangle triangle = block.triangle(found.lane);
+
+  // Take the coordinates in the order of the test, so that it need not pick them one by one.
+  RayShear shear(ray.origin, ray.direction);
+  const auto turned = [&shear](const auto& at) {
+    return Vec3{at(shear.axis_x), at(shear.axis_y), at(shear.axis_z)};
+  };
+  const auto vertex = [&](int k) { return turned([&](int axis) { return block.v[k][axis][found.lane]; }); };
+  const Vec3 a = vertex(0), b = vertex(1), c = vertex(2);
+  shear.origin = turned([&ray](int axis) { return (&ray.origin.x)[axis]; });
+  shear.axis_x = 0, shear.axis_y = 1, shear.axis_z = 2;
   Crossing crossing;
-  intersect_triangle(RayShear(ray.origin, ray.direction), triangle.a, triangle.b, triangle.c, crossing);
+  intersect_triangle(shear, a, b, c, crossing);
   const PartMesh& mesh = parts.world.mesh_of(found.key);
   Hit hit;
   hit.t = found.t;

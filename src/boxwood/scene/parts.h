@@ -40,7 +40,7 @@ struct Part {
     const PartMesh* mesh = meshes.data();
     for (std::size_t left = meshes.size(); left > 1;) {
       const std::size_t half = left / 2;
-      mesh = mesh[half].first_key <= key ? mesh + half : mesh;
+      mesh += half * static_cast<std::size_t>(mesh[half].first_key <= key);
       left -= half;
     }
     return *mesh;

@@ -1,16 +1,10 @@
 #include "boxwood/shape/triangle.h"
 
-#include "boxwood/shape/vec3d.h"
-
 namespace boxwood {
 
 using detail::narrow;
 using detail::Vec3d;
 using detail::widen;
-
-Vec3 Triangle::normal() const {
-  return narrow(unit(cross(widen(b) - widen(a), widen(c) - widen(a))));
-}
 
 Vec3 Triangle::closest_point(Vec3 p) const {
   const Vec3d at = widen(p), va = widen(a), vb = widen(b), vc = widen(c);

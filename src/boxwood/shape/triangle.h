@@ -24,6 +24,7 @@
 #pragma once
 
 #include "boxwood/shape/concept.h"
+#include "boxwood/shape/vec3d.h"
 
 namespace boxwood {
 
@@ -126,7 +127,10 @@ struct Triangle {
 
   Vec3 normal(const PreparedRay&, const Crossing&) const { return normal(); }
   /// By the winding; computed in double, so that tiny and huge triangles have one too. Zero when degenerate.
-  Vec3 normal() const;
+  Vec3 normal() const {
+    using namespace detail;
+    return narrow(unit(cross(widen(b) - widen(a), widen(c) - widen(a))));
+  }
 
   /// The nearest of the three edges' nearest points and the foot of the perpendicular, in double. A
   /// degenerate triangle has a nearest point as well. Compare Ericson, Real-Time Collision Detection, 2005,

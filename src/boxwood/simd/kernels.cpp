@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include "boxwood/simd/batch-inl.h"
+#include "boxwood/simd/finish-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
@@ -50,6 +51,10 @@ void any_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& b
   trace_batch<true>(tree, rays, bounds, output, unusual);
 }
 
+void finish_hits(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found, Hit* hits) {
+  finish_all(tree, rays, found, hits);
+}
+
 constexpr std::string_view target_name() {
   switch (HWY_TARGET) {
     case HWY_AVX3:
@@ -69,7 +74,7 @@ constexpr std::string_view target_name() {
 
 const Kernels* table() {
   static constexpr Kernels kTable{target_name(), kWidth,       closest_hit, any_hit,
-                                  all_hits,      closest_hits, any_hits};
+                                  all_hits,      closest_hits, any_hits,    finish_hits};
   return &kTable;
 }
 

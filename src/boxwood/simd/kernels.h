@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "boxwood/core/hit.h"
 #include "boxwood/core/ray.h"
 #include "boxwood/simd/triangle_tree.h"
 
@@ -51,6 +52,11 @@ struct Kernels {
                        TriangleHit* hits, std::vector<std::uint32_t>& unusual);
   void (*any_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
                    std::vector<std::uint32_t>& unusual);
+
+  /// Fills hits[i] with t, u, v and the normal of what closest_hits found for rays[i], or with a miss; ids
+  /// are left to the caller.
+  void (*finish_hits)(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
+                      Hit* hits);
 };
 
 /// Every set of kernels that this program has and this machine can run, the fastest first. May be empty: then
