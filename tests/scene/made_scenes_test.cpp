@@ -3,6 +3,7 @@
 
 #include "boxwood/core/random.h"
 #include "boxwood/gallery/gallery.h"
+#include "boxwood/simd/validate.h"
 #include "scene/scene_oracle.h"
 
 namespace boxwood {
@@ -39,6 +40,10 @@ TEST_P(MadeScenes, AnswerAsIfTheyHadNoTrees) {
     scenes.emplace_back(desc, options);
   }
 
+  scenes.emplace_back(desc, BuildOptions::fast());
+  scenes.emplace_back(desc, BuildOptions::best());  // cuts triangles
+  for (const Scene& scene : scenes) ASSERT_EQ(simd::validate(scene.parts().world.triangles), "");
+
   std::size_t crossings = 0;
   std::vector<Hit> all;
   for (const Ray& ray : rays_through(scenes[0].bounds(), 120)) {
@@ -55,6 +60,7 @@ TEST_P(MadeScenes, AnswerAsIfTheyHadNoTrees) {
       closest.normal = {};
       ASSERT_EQ(closest, expected.empty() ? Hit{} : expected[0]);
       ASSERT_EQ(scene.any_hit(ray), !expected.empty());
+      ASSERT_EQ(scene.count_hits(ray), expected.size());
     }
   }
   EXPECT_GT(crossings, 0u);

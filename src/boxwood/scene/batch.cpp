@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::size_t kMaxChunk = 4096, kMinChunk = 512;
 
+/// Chunks begin at multiples of this, so that none cuts a tile of a picture, whose rays go the same way.
+constexpr std::size_t kWhole = 64;
+
 void check_lengths(std::size_t rays, std::size_t hits) {
   if (rays != hits)
     throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " +
@@ -30,7 +33,9 @@ void for_chunks(Executor* given, std::size_t count, const Body& body) {
   }
   Executor& executor = given ? *given : default_executor();
   const std::size_t share = count / (8 * static_cast<std::size_t>(executor.concurrency()));
-  executor.for_range(0, count, std::clamp(share, kMinChunk, kMaxChunk), body);
+  const std::size_t chunk = std::clamp(share, kMinChunk, kMaxChunk) / kWhole * kWhole;
+  parallel_for(executor, 0, (count + chunk - 1) / chunk, 1,
+               [&](std::size_t i) { body(i * chunk, std::min((i + 1) * chunk, count)); });
 }
 
 /// A thread's memory between a kernel and the answers; taken while in use, because a user's own shape may ask

@@ -51,7 +51,10 @@ simd::TriangleTree build_triangles(const Part& part, const SceneDesc& desc, cons
   }
 
   // Build and collapse; let go of what the next step does not need.
-  Bvh bvh = build(std::span<const Box3>(boxes.data(), count), options);
+  const Clip clip = [&triangles](PrimId id, const Box3& region) {
+    return triangles[id.value].clipped_box(region);
+  };
+  Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, options);
   boxes = {};
   const WideBvh<W> wide = collapse<W>(bvh, executor);
   bvh = {};

@@ -204,6 +204,13 @@ class Collapser {
   ChildRef emit_leaf(Piece<W>& piece, std::uint32_t i) const {
     const std::size_t first = piece.slots.size();
     gather(i, piece.slots);
+
+    // Parts of one primitive that meet again in a leaf are one; there are a dozen at most.
+    auto end = piece.slots.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto begin = end;
+    for (auto slot = begin; slot != piece.slots.end(); ++slot)
+      if (std::find(begin, end, *slot) == end) *end++ = *slot;
+    piece.slots.erase(end, piece.slots.end());
     return close_leaf(piece, first);
   }
   void gather(std::uint32_t i, std::vector<PrimId>& out) const {
