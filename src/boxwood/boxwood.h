@@ -35,8 +35,10 @@
 
 // Floor 1. tree: what organises it.
 #include "boxwood/tree/bvh.h"
+#include "boxwood/tree/collapse.h"
 #include "boxwood/tree/metrics.h"
 #include "boxwood/tree/validate.h"
+#include "boxwood/tree/wide.h"
 
 // Floor 2. build: make a tree.
 #include "boxwood/build/build.h"
@@ -52,6 +54,7 @@
 #include "boxwood/query/nearest.h"
 #include "boxwood/query/overlap.h"
 #include "boxwood/query/traverse.h"
+#include "boxwood/query/traverse_wide.h"
 
 // Floor 3. scene: the hall.
 #include "boxwood/scene/description.h"

@@ -81,6 +81,28 @@ TEST_F(Program, ScenesThatAreNotThere) {
   expect_refusal("render . -o a.png", 1, ".");
 }
 
+TEST_F(Program, SaysWhichKernelsRun) {
+  const Outcome scalar = run_shell("BOXWOOD_TARGET=scalar exec '" BOXWOOD_PROGRAM "' info --cpu");
+  EXPECT_EQ(scalar.exit_code, 0);
+  EXPECT_EQ(scalar.err, "");
+  EXPECT_NE(scalar.out.find("plain C++"), std::string::npos) << scalar.out;
+  const Outcome best = run_shell("unset BOXWOOD_TARGET; exec '" BOXWOOD_PROGRAM "' info --cpu");
+  EXPECT_EQ(best.exit_code, 0);
+  EXPECT_NE(best.out.find("running"), std::string::npos) << best.out;
+  EXPECT_NE(best.out.find(", scalar\n"), std::string::npos) << best.out;
+}
+
+TEST_F(Program, RefusesATargetThatIsNone) {
+  for (const std::string command :
+       {"info --cpu", "info cornell --quiet", "render cornell -o a.png --quiet"}) {
+    const Outcome outcome = run_shell("BOXWOOD_TARGET=mmx exec '" BOXWOOD_PROGRAM "' " + command);
+    EXPECT_EQ(outcome.exit_code, 1) << command;
+    EXPECT_EQ(outcome.error_lines(), 1) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("boxwood: BOXWOOD_TARGET is \"mmx\"; this machine has ", 0), 0u)
+        << outcome.err;
+  }
+}
+
 TEST_F(Program, FilesThatMayNotBeSeen) {
   std::filesystem::create_symlink("loop.obj", folder_ / "loop.obj");
   expect_refusal("info loop.obj", 1, "loop.obj: cannot be read: Too many levels of symbolic links", 1);
