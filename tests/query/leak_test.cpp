@@ -19,106 +19,26 @@
 #include "boxwood/query/closest_hit.h"
 #include "boxwood/query/group.h"
 #include "boxwood/shape/instance.h"
-#include "support/meshes.h"
+#include "support/leak_rays.h"
 
 namespace boxwood {
 namespace {
 
-/// A closed mesh in about [-1, 1]^3, with a ball well inside of it.
-struct Body {
-  std::string name;
-  test::Mesh mesh;
-  Vec3 inside;
-  float clearance;
-};
-
-const std::vector<Body>& bodies() {
-  static const std::vector<Body> all{
-      {"icosphere, 320", test::icosphere(2), {0, 0, 0}, 0.5f},
-      {"icosphere, 20480", test::icosphere(5), {0, 0, 0}, 0.5f},
-      {"torus", test::torus(64, 32), {1, 0, 0}, 0.2f},
-      {"cube", test::cube(1), {0, 0, 0}, 0.5f},
-      {"cube of 12 * 64", test::cube(8), {0, 0, 0}, 0.5f},
-      {"sponge", test::sponge(3), {-26.0f / 27, -26.0f / 27, -26.0f / 27}, 0.01f},
-      {"rough sphere", test::rough_sphere(5), {0, 0, 0}, 0.2f},
-  };
-  return all;
-}
-
-constexpr Vec3 kOffsets[] = {{0, 0, 0}, {1e3f, -1e3f, 1e3f}, {-1e4f, 1e4f, 1e4f}};
+using test::aim;
+using test::AimedRay;
+using test::bodies;
+using test::Body;
+using test::crossing_sign;
+using test::kOffsets;
 
 std::size_t ray_budget() {
   const char* wish = std::getenv("BOXWOOD_LONG_TESTS");
   return wish && std::string(wish) == "1" ? 10'000'000 : 1'000'000;
 }
 
-/// A ray with what must be true of it.
-struct AimedRay {
-  Ray ray;
-  bool starts_inside, must_hit;
-};
-
-/// A vertex, the middle of an edge or a point on it; now and then a point of a face.
-Vec3 target(const test::Mesh& mesh, Random& random) {
-  const auto& face = mesh.indices[random.below(static_cast<std::uint32_t>(mesh.indices.size()))];
-  const Vec3 a = mesh.positions[face[0]], b = mesh.positions[face[1]], c = mesh.positions[face[2]];
-  switch (random.below(8)) {
-    case 0:
-    case 1:
-    case 2:
-      return a;
-    case 3:
-    case 4:
-      return a * 0.5f + b * 0.5f;
-    case 5:
-    case 6:
-      return a + (b - a) * random.uniform();
-    default:
-      return a + ((b - a) * random.uniform() + (c - a) * random.uniform()) * 0.5f;
-  }
-}
-
-AimedRay aim(const test::Mesh& mesh, Vec3 inside, float clearance, float size, Random& random) {
-  const Vec3 to = target(mesh, random);
-  const Vec3 near_inside = inside + random.in_box(splat(-1), splat(1)) * (clearance * 0.57f);
-  switch (random.below(4)) {
-    case 0:
-    case 1:
-      return {{near_inside, 0, to - near_inside, kInfinity}, true, true};
-    case 2: {
-      // From outside, through the target, to the ball inside.
-      const Vec3 from = inside + normalize((to - inside) * (1 / size)) * (size * random.uniform(4, 20));
-      return {{from, 0, to - from, kInfinity}, false, true};
-    }
-    default: {
-      // From outside past the target, along an axis or not: the target may be on the silhouette.
-      Vec3 way = random.direction();
-      if (random.below(2)) {
-        way = {0, 0, 0};
-        way[static_cast<int>(random.below(3))] = random.below(2) ? 1.0f : -1.0f;
-      }
-      return {{to - way * (size * 4), 0, way, kInfinity}, false, false};
-    }
-  }
-}
-
 struct Count {
   std::atomic<std::size_t> rays = 0, leaks = 0, miscounted = 0, disagreements = 0, crossings = 0;
 };
-
-/// +1 where the ray leaves through the triangle, -1 where it enters:
-/// the sign of the area that the crossing test saw.
-int crossing_sign(const PreparedRay& ray, const Triangle& triangle) {
-  const auto project = [&](Vec3 p) {
-    const Vec3 t = p - ray.origin;
-    return detail::Point2{t[ray.axis_x] - ray.shear_x * t[ray.axis_z],
-                          t[ray.axis_y] - ray.shear_y * t[ray.axis_z]};
-  };
-  const auto a = project(triangle.a), b = project(triangle.b), c = project(triangle.c);
-  const auto edge = [](detail::Point2 p, detail::Point2 q) { return double(p.x) * q.y - double(p.y) * q.x; };
-  const double area = edge(a, b) + edge(b, c) + edge(c, a);
-  return (area > 0) == (ray.shear_z > 0) ? 1 : -1;
-}
 
 /// Traces `count` rays at the body in parallel and adds up what went wrong. `Shape` is made from a Triangle.
 template <class Shape>
