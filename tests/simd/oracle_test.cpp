@@ -44,6 +44,29 @@ void add_extreme_rays(std::vector<Ray>& rays, const std::vector<Vec3>& targets, 
   }
 }
 
+/// Rays that go the same way, one after the other, as batches trace them together: from one point along an
+/// edge from corner to corner, along an axis from a small grid, and the same ray again and again.
+void add_bundles(std::vector<Ray>& rays, const std::vector<Triangle>& triangles, float size, int count,
+                 Random& random) {
+  constexpr int kRun = 40;  // holds a whole bundle, wherever it begins
+  for (int i = 0; i < count; ++i) {
+    const Triangle& t = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
+    const Vec3 from = t.a + random.in_box(splat(-1), splat(1)) * size * 10.0f;
+    const int axis = static_cast<int>(random.below(3));
+    Vec3 way{0, 0, 0};
+    way[axis] = random.below(2) ? 1.0f : -1.0f;
+    const float t_max = random.below(2) ? kInfinity : random.uniform(0, 2);
+    for (int k = 0; k < kRun; ++k)
+      rays.push_back({from, 0, t.a + (t.b - t.a) * (float(k) / 32) * 0.5f - from, t_max});
+    for (int k = 0; k < kRun; ++k) {
+      Vec3 to = t.a;
+      to[(axis + 1) % 3] += (t.c - t.a)[(axis + 1) % 3] * float(k % 4) / 64;
+      rays.push_back({to - way * size, 0, way, kInfinity});
+    }
+    for (int k = 0; k < kRun; ++k) rays.push_back({from, 0, t.b * 0.5f + t.c * 0.5f - from, kInfinity});
+  }
+}
+
 std::vector<Vec3> corners_and_middles(const std::vector<Triangle>& triangles) {
   std::vector<Vec3> targets;
   for (const Triangle& t : triangles) {
@@ -61,6 +84,7 @@ std::vector<Ray> rays_for(const std::vector<Triangle>& triangles, int effort = 3
       boxwood::test::targets_of(triangles, corners_and_middles(triangles), random);
   std::vector<Ray> rays = boxwood::test::hard_rays(targets, brute.bounds(), 10 * effort, random);
   add_extreme_rays(rays, targets, max_component(brute.bounds().extent()) * 2 + 1, 5 * effort, random);
+  add_bundles(rays, triangles, max_component(brute.bounds().extent()) * 2, effort, random);
   boxwood::test::add_limited_rays(rays, brute, random);
   return rays;
 }
@@ -244,8 +268,8 @@ TEST(KernelOracle, KeysDecideTies) {
   triangles.insert(triangles.end(), triangles.begin(), triangles.begin() + 150);
   std::vector<std::uint32_t> keys(triangles.size());
   Random random(2);
-  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = static_cast<std::uint32_t>(i) * 9'500'000u;
-  keys.back() = TriangleHit::kNone - 1;
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = static_cast<std::uint32_t>(i) * 4'700'000u;
+  keys.back() = 0x7ffffffeu;
   for (std::size_t i = keys.size(); i > 1; --i)
     std::swap(keys[i - 1], keys[random.below(static_cast<std::uint32_t>(i))]);
   const std::vector<Ray> rays = rays_for(triangles);
