@@ -5,6 +5,7 @@ namespace {
 
 /// Keeps the first in the order of the contract.
 struct ClosestSink {
+  static constexpr Question kQuestion = Question::closest;
   float t_max;
   Crossing crossing{};
   InstanceId instance_id{};
@@ -28,6 +29,7 @@ struct ClosestSink {
 
 /// Stops the walk at the first report.
 struct AnySink {
+  static constexpr Question kQuestion = Question::any;
   float t_max;
   bool found = false;
   float limit() const { return found ? -kInfinity : t_max; }

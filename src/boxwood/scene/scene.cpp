@@ -16,6 +16,7 @@ using detail::make_hit;
 
 /// Keeps everything.
 struct AllSink {
+  static constexpr detail::Question kQuestion = detail::Question::all;
   const Scene::Parts& parts;
   float t_max;
   std::vector<Hit>& hits;

@@ -42,6 +42,9 @@ struct UnderPlacement {
   InstanceId name(InstanceId) const { return instance_id; }
 };
 
+/// What a sink is there for; says which kernel serves it.
+enum class Question { closest, any, all };
+
 /// Shows every leaf of the tree that may matter to `query`, whatever the tree's width.
 template <WideQuery Q, class Statistics>
 void traverse_triangles(const simd::TriangleTree& tree, Q& query, Statistics& statistics) {
@@ -162,11 +165,42 @@ class PlacementQuery {
                             placement.object_from_world.vector(ray_.direction),
                             inner_t_min(ray_, above.inside), above.gate(any).limit(), part.bounds);
     if (!local.is_valid()) return;
-    walk_triangles(part, local, above, sink_, statistics_);
+    if (!std::is_same_v<Statistics, NoStatistics> || !ask_kernel(part, local, above))
+      walk_triangles(part, local, above, sink_, statistics_);
     walk_shapes(parts_, part, local, above, sink_, statistics_);
   }
 
  private:
+  /// Has the part's triangles answered by a kernel; false when there is none that takes the ray.
+  bool ask_kernel(const Part& part, const PreparedRay& local, const UnderPlacement& above) {
+    const simd::TriangleTree& tree = part.triangles;
+    if (tree.is_empty()) return true;
+    const simd::Kernels* kernels = simd::kernels();
+    if (!kernels || !tree.is_ordinary()) return false;
+    const simd::Passage passage{above.inside, ray_.t_min};
+    const auto report = [&](const simd::TriangleHit& hit) {
+      const Triangle triangle = tree.block_at(hit.block).triangle(hit.lane);
+      Crossing crossing;
+      intersect_triangle(local, triangle.a, triangle.b, triangle.c, crossing);
+      crossing.t = hit.t;
+      LabelledByKey<UnderPlacement, Sink>{sink_, part, above, hit.key}.report(crossing);
+    };
+    if constexpr (Sink::kQuestion == Question::closest) {
+      simd::TriangleHit hit;
+      if (!kernels->placed_closest_hit(tree, local, passage, sink_.limit(), hit)) return false;
+      if (hit.is_hit()) report(hit);
+    } else if constexpr (Sink::kQuestion == Question::any) {
+      bool is_hit = false;
+      if (!kernels->placed_any_hit(tree, local, passage, sink_.limit(), is_hit)) return false;
+      if (is_hit) sink_.report({}, {}, {});
+    } else {
+      std::vector<simd::TriangleHit> found;
+      if (!kernels->placed_all_hits(tree, local, passage, sink_.limit(), found)) return false;
+      for (const simd::TriangleHit& hit : found) report(hit);
+    }
+    return true;
+  }
+
   const Scene::Parts& parts_;
   const PreparedRay& ray_;
   Sink& sink_;

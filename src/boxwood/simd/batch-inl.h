@@ -55,9 +55,9 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
       }
       TriangleHit hit{rays[i].t_max + 0.0f};
       if constexpr (kAny) {
-        if (any_hit_one(pool, ray, hit.t)) hit.block = 0;
+        if (any_hit_one(pool, ray, Direct{}, hit.t)) hit.block = 0;
       } else {
-        closest_hit_one(pool, ray, hit);
+        closest_hit_one(pool, ray, Direct{}, hit);
       }
       output(i, hit);
     }

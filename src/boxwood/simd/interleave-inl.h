@@ -128,7 +128,7 @@ class Interleaved {
     const DIW di;
     std::int32_t* top = ray.top;
     const char* node = node_at(pool_, static_cast<std::uint32_t>(*top));
-    const Slabs slabs = BoxRay(ray.ray).cross(node, ray.hit.t);
+    const Slabs slabs = BoxRay<false>(ray.ray).cross(node, ray.hit.t);
     const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
     const std::size_t count = hn::CountTrue(di, slabs.enters);
     if constexpr (kAny) {

@@ -17,7 +17,7 @@ bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, T
   KernelRay kernel_ray;
   if (!prepare(ray, bounds, kernel_ray)) return false;
   hit = {ray.t_max + 0.0f};
-  closest_hit_one(tree.pool(), kernel_ray, hit);
+  closest_hit_one(tree.pool(), kernel_ray, Direct{}, hit);
   if (!hit.is_hit()) hit.t = kInfinity;
   return true;
 }
@@ -25,14 +25,37 @@ bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, T
 bool any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit) {
   KernelRay kernel_ray;
   if (!prepare(ray, bounds, kernel_ray)) return false;
-  is_hit = any_hit_one(tree.pool(), kernel_ray, ray.t_max + 0.0f);
+  is_hit = any_hit_one(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f);
   return true;
 }
 
 bool all_hits(const TriangleTree& tree, const Ray& ray, const Box3& bounds, std::vector<TriangleHit>& hits) {
   KernelRay kernel_ray;
   if (!prepare(ray, bounds, kernel_ray)) return false;
-  all_hits_one(tree.pool(), kernel_ray, ray.t_max + 0.0f, hits);
+  all_hits_one(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f, hits);
+  return true;
+}
+
+bool placed_closest_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
+                        TriangleHit& hit) {
+  if (!is_ordinary(ray, tree.box())) return false;
+  hit = {t_max + 0.0f};
+  closest_hit_one(tree.pool(), KernelRay(ray), Moved{passage}, hit);
+  if (!hit.is_hit()) hit.t = kInfinity;
+  return true;
+}
+
+bool placed_any_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
+                    bool& is_hit) {
+  if (!is_ordinary(ray, tree.box())) return false;
+  is_hit = any_hit_one(tree.pool(), KernelRay(ray), Moved{passage}, t_max + 0.0f);
+  return true;
+}
+
+bool placed_all_hits(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
+                     std::vector<TriangleHit>& hits) {
+  if (!is_ordinary(ray, tree.box())) return false;
+  all_hits_one(tree.pool(), KernelRay(ray), Moved{passage}, t_max + 0.0f, hits);
   return true;
 }
 
@@ -73,8 +96,9 @@ constexpr std::string_view target_name() {
 }
 
 const Kernels* table() {
-  static constexpr Kernels kTable{target_name(), kWidth,       closest_hit, any_hit,
-                                  all_hits,      closest_hits, any_hits,    finish_hits};
+  static constexpr Kernels kTable{target_name(),      kWidth,         closest_hit,     any_hit,      all_hits,
+                                  placed_closest_hit, placed_any_hit, placed_all_hits, closest_hits, any_hits,
+                                  finish_hits};
   return &kTable;
 }
 

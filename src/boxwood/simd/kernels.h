@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "boxwood/core/hit.h"
-#include "boxwood/core/ray.h"
+#include "boxwood/core/prepared_ray.h"
 #include "boxwood/simd/triangle_tree.h"
 
 namespace boxwood::simd {
@@ -25,6 +25,14 @@ struct TriangleHit {
   std::uint32_t lane = 0;       ///< In its block.
 
   bool is_hit() const { return block != kNone; }
+};
+
+/// What stands between the triangles below a placement and the answer: t is moved into `inside`, which is
+/// what the ray has inside the placement's world box, and counts when it is at least t_min then
+/// (shape/gate.h).
+struct Passage {
+  Interval inside;
+  float t_min;
 };
 
 /// The kernels of one instruction set.
@@ -46,8 +54,16 @@ struct Kernels {
   bool (*all_hits)(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
                    std::vector<TriangleHit>& hits);
 
-  /// The same for many rays, on the calling thread: hits[i] answers rays[i]. The indices of rays that are not
-  /// ordinary are appended to `unusual`.
+  /// The same for a ray in object space, below a placement; t_max is the world's, and so are the answers.
+  bool (*placed_closest_hit)(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
+                             float t_max, TriangleHit& hit);
+  bool (*placed_any_hit)(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
+                         float t_max, bool& is_hit);
+  bool (*placed_all_hits)(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
+                          float t_max, std::vector<TriangleHit>& hits);
+
+  /// As the first three for many rays, on the calling thread: hits[i] answers rays[i]. The indices of rays
+  /// that are not ordinary are appended to `unusual`.
   void (*closest_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
                        TriangleHit* hits, std::vector<std::uint32_t>& unusual);
   void (*any_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,

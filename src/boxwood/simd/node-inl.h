@@ -26,7 +26,9 @@ struct Slabs {
   hn::Mask<DIW> enters;
 };
 
-/// The constants of a ray for boxes, in vectors: a kernel that follows one ray keeps them in registers.
+/// The constants of a ray for boxes, in vectors: a kernel that follows one ray keeps them in registers. A ray
+/// below a placement may have negative t (kSigned), where floats must be compared as floats.
+template <bool kSigned>
 struct BoxRay {
   VW inverse[3], near_shift[3], far_shift[3], t_min;
   std::ptrdiff_t near_row[3], far_row[3];
@@ -48,14 +50,21 @@ struct BoxRay {
     const DIW di;
     const auto near = [&](int k) {
       const VW planes = hn::Load(d, reinterpret_cast<const float*>(node + near_row[k]));
-      return hn::BitCast(di, hn::MulAdd(planes, inverse[k], near_shift[k]));
+      return hn::MulAdd(planes, inverse[k], near_shift[k]);
     };
     const auto far = [&](int k) {
       const VW planes = hn::Load(d, reinterpret_cast<const float*>(node + far_row[k]));
-      return hn::BitCast(di, hn::MulAdd(planes, inverse[k], far_shift[k]));
+      return hn::MulAdd(planes, inverse[k], far_shift[k]);
     };
-    const VIW entry = hn::Max(hn::Max(near(0), near(1)), hn::Max(near(2), hn::BitCast(di, t_min)));
-    const VIW exit = hn::Min(hn::Min(far(0), far(1)), hn::Min(far(2), hn::BitCast(di, hn::Set(d, limit))));
+    if constexpr (kSigned) {
+      const VW entry = hn::Max(hn::Max(near(0), near(1)), hn::Max(near(2), t_min));
+      const VW exit = hn::Min(hn::Min(far(0), far(1)), hn::Min(far(2), hn::Set(d, limit)));
+      return {hn::BitCast(di, hn::Max(entry, hn::Zero(d))), hn::RebindMask(di, hn::Le(entry, exit))};
+    }
+    const auto bits = [&](VW v) { return hn::BitCast(di, v); };
+    const VIW entry = hn::Max(hn::Max(bits(near(0)), bits(near(1))), hn::Max(bits(near(2)), bits(t_min)));
+    const VIW exit =
+        hn::Min(hn::Min(bits(far(0)), bits(far(1))), hn::Min(bits(far(2)), bits(hn::Set(d, limit))));
     return {entry, hn::RebindMask(di, hn::Le(hn::BitCast(d, entry), hn::BitCast(d, exit)))};
   }
 };

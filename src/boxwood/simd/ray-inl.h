@@ -56,6 +56,28 @@ struct alignas(64) KernelRay {
   std::int32_t axis_row[4];
   float t_min;
 
+  KernelRay() = default;
+
+  /// From a ray that was prepared before; its t_min may be negative.
+  explicit KernelRay(const PreparedRay& ray) : t_min(ray.t_min) {
+    const int axes[3] = {ray.axis_x, ray.axis_y, ray.axis_z};
+    const float constants[3] = {ray.shear_x, ray.shear_y, ray.shear_z};
+    for (int k = 0; k < 3; ++k) {
+      // The slack once more by half, from the distance of the shifts, which is twice the slack.
+      gate_near_shift[k] = ray.near_shift()[k];
+      gate_far_shift[k] = ray.far_shift()[k];
+      const float more = (gate_far_shift[k] - gate_near_shift[k]) * 0.25f + 0x1p-120f;
+      inverse[k] = ray.inverse()[k];
+      near_shift[k] = gate_near_shift[k] - more;
+      far_shift[k] = gate_far_shift[k] + more;
+      near_row[k] = kRowBytes * (2 * k + ray.is_backward(k));
+      far_row[k] = near_row[k] ^ kRowBytes;
+      origin[k] = ray.origin[axes[k]];
+      shear[k] = constants[k];
+      axis_row[k] = 16 * axes[k];
+    }
+  }
+
   RayShear shear_constants() const {
     RayShear s;
     const int axes[3] = {axis_row[0] / 16, axis_row[1] / 16, axis_row[2] / 16};
@@ -69,6 +91,13 @@ struct alignas(64) KernelRay {
     return s;
   }
 };
+
+/// Whether a ray that was prepared before is an ordinary one, for a tree inside `box`.
+HWY_INLINE bool is_ordinary(const PreparedRay& ray, const Box3& box) {
+  const Vec3 far_away = max(abs(box.lower - ray.origin), abs(box.upper - ray.origin)) + abs(ray.direction);
+  return max_component(abs(ray.direction)) >= kSmallestDirection && far_away.x <= kLargestReach &&
+         far_away.y <= kLargestReach && far_away.z <= kLargestReach;
+}
 
 /// Positions in the three orders of axes, for permuting and for rows of a block.
 alignas(16) inline constexpr std::int32_t kAxes[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}, {0, 1, 2, 3}};

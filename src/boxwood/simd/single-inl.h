@@ -8,6 +8,7 @@
 #endif
 
 #include <bit>
+#include <limits>
 
 #include "boxwood/simd/block-inl.h"
 #include "boxwood/simd/node-inl.h"
@@ -29,15 +30,35 @@ HWY_INLINE const char* node_at(const char* pool, std::uint32_t ref) {
   return pool + std::size_t(ref) * 2;
 }
 
+/// How t is moved on its way from the tree to the answer: not at all in the world, and below a placement as
+/// BoxGate (shape/gate.h) does it.
+struct Direct {
+  static constexpr bool kSigned = false;
+  float limit(float outer) const { return outer; }
+  float move(float t) const { return t; }
+  bool admits(float) const { return true; }
+};
+struct Moved {
+  static constexpr bool kSigned = true;
+  Passage passage;
+  float limit(float outer) const {
+    if (outer < passage.inside.entry) return -kInfinity;
+    return outer >= passage.inside.exit ? kInfinity : outer;
+  }
+  float move(float t) const { return min(max(t, passage.inside.entry), passage.inside.exit) + 0.0f; }
+  bool admits(float t) const { return t >= passage.t_min; }
+};
+
 /// Takes the crossings of `lanes`, keeps the first in the order of the contract. Returns whether `hit`
 /// changed.
+template <class Way = Direct>
 HWY_INLINE bool take_closest(const char* pool, const TriangleBlock* block, std::uint32_t lanes,
-                             const float* ts, TriangleHit& hit) {
+                             const float* ts, TriangleHit& hit, const Way& way = {}) {
   bool changed = false;
   for (; lanes; lanes &= lanes - 1) {
     const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
-    const float t = ts[lane];
-    if (t > hit.t || (t == hit.t && block->key[lane] >= hit.key)) continue;
+    const float t = way.move(ts[lane]);
+    if (!way.admits(t) || t > hit.t || (t == hit.t && block->key[lane] >= hit.key)) continue;
     hit = {t, block->key[lane],
            static_cast<std::uint32_t>((reinterpret_cast<const char*>(block) - pool) / 32), lane};
     changed = true;
@@ -45,17 +66,17 @@ HWY_INLINE bool take_closest(const char* pool, const TriangleBlock* block, std::
   return changed;
 }
 
-/// Tests the blocks of a leaf against [ray.t_min, hit.t]. Returns whether `hit` changed.
-HWY_INLINE bool visit_leaf(const char* pool, std::uint32_t ref, const KernelRay& ray, TriangleHit& hit) {
+/// Tests the blocks of a leaf against [ray.t_min, hit.t].
+template <class Way>
+HWY_INLINE void visit_leaf(const char* pool, std::uint32_t ref, const KernelRay& ray, const Way& way,
+                           TriangleHit& hit) {
   const TriangleBlock* block = block_at(pool, ref);
-  bool changed = false;
   for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) {
     const Crossed crossed = test_edges(*block, ray);
     if (crossed.maybe == 0) continue;
     HWY_ALIGN float ts[kBlockWidth];
-    changed |= take_closest(pool, block, test_planes(*block, ray, crossed, hit.t, ts), ts, hit);
+    take_closest(pool, block, test_planes(*block, ray, crossed, way.limit(hit.t), ts), ts, hit, way);
   }
-  return changed;
 }
 
 /// The first four lanes of a vector of children, and four lanes as such a vector.
@@ -102,19 +123,22 @@ HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const s
 }
 
 /// Not inlined: the compiler would take the constants apart where they were put together, at each node anew.
-HWY_NOINLINE inline void closest_hit_one(const char* pool, const KernelRay& ray, TriangleHit& result) {
+/// result.t is the limit before.
+template <class Way>
+HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const Way& way,
+                                  TriangleHit& result) {
   const DIW di;
-  const BoxRay box_ray(ray);
+  const BoxRay<Way::kSigned> box_ray(ray);
   TriangleHit hit = result;
   HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
-  keys[0] = 0;
+  keys[0] = std::numeric_limits<std::int32_t>::min();  // below every limit
   refs[0] = static_cast<std::int32_t>(kBottom);
   std::size_t top = 0;
   std::uint32_t current = 0;
   while (true) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = box_ray.cross(node, hit.t);
+      const Slabs slabs = box_ray.cross(node, way.limit(hit.t));
       const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
       const std::uint32_t bits = mask_bits(di, slabs.enters);
       if (bits != 0) {
@@ -133,9 +157,9 @@ HWY_NOINLINE inline void closest_hit_one(const char* pool, const KernelRay& ray,
       }
     } else {
       if (current == kBottom) break;
-      visit_leaf(pool, current, ray, hit);
+      visit_leaf(pool, current, ray, way, hit);
     }
-    const std::int32_t limit_key = std::bit_cast<std::int32_t>(hit.t) | 7;
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(way.limit(hit.t)) | 7;
     while (keys[top] > limit_key) --top;
     current = static_cast<std::uint32_t>(refs[top]);
     --top;
@@ -143,9 +167,11 @@ HWY_NOINLINE inline void closest_hit_one(const char* pool, const KernelRay& ray,
   result = hit;
 }
 
-HWY_NOINLINE inline bool any_hit_one(const char* pool, const KernelRay& ray, float limit) {
+template <class Way>
+HWY_NOINLINE bool any_hit_one(const char* pool, const KernelRay& ray, const Way& way, float t_max) {
   const DIW di;
-  const BoxRay box_ray(ray);
+  const BoxRay<Way::kSigned> box_ray(ray);
+  const float limit = way.limit(t_max);
   HWY_ALIGN std::uint32_t refs[kStackSize];
   refs[0] = kBottom;
   int top = 0;
@@ -167,17 +193,21 @@ HWY_NOINLINE inline bool any_hit_one(const char* pool, const KernelRay& ray, flo
       for (std::uint32_t left = current >> 2 & 3; left > 0; --left, ++block) {
         const Crossed crossed = test_edges(*block, ray);
         HWY_ALIGN float ts[kBlockWidth];
-        if (crossed.maybe && test_planes(*block, ray, crossed, limit, ts)) return true;
+        if (crossed.maybe == 0) continue;
+        for (std::uint32_t lanes = test_planes(*block, ray, crossed, limit, ts); lanes; lanes &= lanes - 1)
+          if (way.admits(way.move(ts[__builtin_ctz(lanes)]))) return true;
       }
     }
     current = refs[top--];
   }
 }
 
-HWY_NOINLINE inline void all_hits_one(const char* pool, const KernelRay& ray, float limit,
-                                      std::vector<TriangleHit>& hits) {
+template <class Way>
+HWY_NOINLINE void all_hits_one(const char* pool, const KernelRay& ray, const Way& way, float t_max,
+                               std::vector<TriangleHit>& hits) {
   const DIW di;
-  const BoxRay box_ray(ray);
+  const BoxRay<Way::kSigned> box_ray(ray);
+  const float limit = way.limit(t_max);
   HWY_ALIGN std::uint32_t refs[kStackSize];
   refs[0] = kBottom;
   int top = 0;
@@ -198,7 +228,9 @@ HWY_NOINLINE inline void all_hits_one(const char* pool, const KernelRay& ray, fl
       for (std::uint32_t lanes = test_planes(*block, ray, crossed, limit, ts); lanes; lanes &= lanes - 1) {
         const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
         if (lane > 0 && block->key[lane] == block->key[0]) continue;  // it only fills the block
-        hits.push_back({ts[lane], block->key[lane],
+        const float t = way.move(ts[lane]);
+        if (!way.admits(t)) continue;
+        hits.push_back({t, block->key[lane],
                         static_cast<std::uint32_t>((reinterpret_cast<const char*>(block) - pool) / 32),
                         lane});
       }
