@@ -4,11 +4,11 @@
 
 PROGRAM := build/release/boxwood
 
-.PHONY: help setup build demo test check bench microbench format docs clean
+.PHONY: help setup build demo test test-arm check bench microbench format docs clean
 .DEFAULT_GOAL := help
 
 help:    ## This list.
-	@sed -n 's/^\([a-z]*\): .*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 19
+	@sed -n 's/^\([a-z-]*\): .*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 19
 
 setup:   ## Install the Debian packages that are missing; nothing when none are.
 	@tools/setup.sh
@@ -25,6 +25,9 @@ test: setup  ## Build everything and run every test.
 	cmake --preset release
 	cmake --build --preset release
 	tools/run_tests.py build/release
+
+test-arm:  ## Build the kernels and their tests for 64-bit ARM, and run them under QEMU.
+	tools/test_arm.sh
 
 check: setup  ## What a change must pass before it is shared: format, warnings as errors, the sanitizers.
 	@tools/setup.sh clang-format
