@@ -38,6 +38,8 @@ struct Range {
 template <bool kAny>
 class Bundle {
  public:
+  /// Written out: gcc compiles an implicit one for the plain machine, where vectors cannot be made.
+  HWY_INLINE Bundle() {}
   /// Takes kBundle rays; false when they do not go the same way, or are not all ordinary.
   HWY_INLINE bool prepare(const Ray* rays, const Box3& bounds) {
     const DB d;
