@@ -32,13 +32,24 @@ void add_geometry(Part& part, std::size_t& triangle_count, const SceneDesc& desc
   }
 }
 
+/// Fills mesh_of_page for `count` triangles.
+void index_meshes(Part& part, std::size_t count) {
+  std::uint32_t mesh = 0;
+  for (std::size_t key = 0; key < count; key += std::size_t(1) << Part::kPageBits) {
+    while (mesh + 1 < part.meshes.size() && part.meshes[mesh + 1].first_key <= key) ++mesh;
+    part.mesh_of_page.push_back(mesh);
+  }
+  if (count > 0) part.mesh_of_page.push_back(static_cast<std::uint32_t>(part.meshes.size() - 1));
+}
+
 /// Builds the tree over the part's meshes, for nodes of W children.
 template <int W>
-simd::TriangleTree build_triangles(const Part& part, const SceneDesc& desc, const BuildOptions& options,
+simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const BuildOptions& options,
                                    Executor& executor) {
   // Fetch the corners once, in the order of the keys.
   std::size_t count = 0;
   for (const PartMesh& mesh : part.meshes) count += primitive_count(desc.geometries[mesh.geometry_id.value]);
+  index_meshes(part, count);
   const RawArray<Triangle> triangles(count);
   RawArray<Box3> boxes(count);
   for (const PartMesh& part_mesh : part.meshes) {

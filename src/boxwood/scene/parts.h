@@ -34,11 +34,15 @@ struct Part {
   std::vector<LeafShape> shapes;
   Box3 bounds;
 
-  /// The mesh of a triangle; the primitive is `key` less its first_key.
+  static constexpr int kPageBits = 10;
+  std::vector<std::uint32_t> mesh_of_page;  ///< The mesh of each 2^kPageBits-th key, and the last mesh.
+
+  /// The mesh of a triangle; the primitive is `key` less its first_key. This runs once for each hit: the page
+  /// leaves few meshes, mostly one, to search among by halving.
   const PartMesh& mesh_of(std::uint32_t key) const {
-    // Halve without a branch: this runs once for each hit.
-    const PartMesh* mesh = meshes.data();
-    for (std::size_t left = meshes.size(); left > 1;) {
+    const std::uint32_t* page = &mesh_of_page[key >> kPageBits];
+    const PartMesh* mesh = &meshes[page[0]];
+    for (std::size_t left = page[1] - page[0] + 1; left > 1;) {
       const std::size_t half = left / 2;
       mesh += half * static_cast<std::size_t>(mesh[half].first_key <= key);
       left -= half;

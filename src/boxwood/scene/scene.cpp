@@ -45,8 +45,13 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 Hit Scene::closest_hit(const Ray& ray) const {
   const Parts& parts = *parts_;
   simd::TriangleHit found;
-  if (parts.kernels && parts.kernels->closest_hit(parts.world.triangles, ray, parts.bounds, found))
-    return detail::finish_closest(parts, ray, found);
+  Hit hit;
+  if (parts.kernels &&
+      parts.kernels->closest_full_hit(parts.world.triangles, ray, parts.bounds, found, hit)) {
+    if (!parts.is_only_triangles) return detail::add_others(parts, ray, found);
+    if (found.is_hit()) detail::name_hit(parts.world, found.key, hit);
+    return hit;
+  }
   NoStatistics none;
   return detail::walk_closest(parts, ray, none);
 }

@@ -166,6 +166,33 @@ inline void finish_all(const TriangleTree& tree, std::span<const Ray> rays, cons
   finish_lanes(lanes, tree, rays, found, hits);
 }
 
+/// Works out one hit, whose ray is still at hand.
+HWY_INLINE void finish_one(const TriangleTree& tree, const KernelRay& ray, const TriangleHit& found,
+                           Hit& hit) {
+  const TriangleBlock& block = tree.block_at(found.block);
+  const char* lane = reinterpret_cast<const char*>(&block) + 4 * found.lane;
+  const auto from_origin = [&](int vertex, int k) {
+    return ray.origin[k] - *reinterpret_cast<const float*>(lane + 48 * vertex + ray.axis_row[k]);
+  };
+  const float sx = ray.shear[0], sy = ray.shear[1];
+  const float az = from_origin(0, 2), bz = from_origin(1, 2), cz = from_origin(2, 2);
+  const float ax = from_origin(0, 0) - sx * az, ay = from_origin(0, 1) - sy * az;
+  const float bx = from_origin(1, 0) - sx * bz, by = from_origin(1, 1) - sy * bz;
+  const float cx = from_origin(2, 0) - sx * cz, cy = from_origin(2, 1) - sy * cz;
+  const float wa = bx * cy - by * cx, wb = cx * ay - cy * ax, wc = ax * by - ay * bx;
+  const float sum = wa + wb + wc, inverse_sum = 1.0f / sum;
+  const Triangle triangle = block.triangle(found.lane);
+  hit.t = found.t;
+  hit.u = wb * inverse_sum;
+  hit.v = wc * inverse_sum;
+  hit.normal = triangle.normal();
+  if (HWY_LIKELY(std::fabs(sum) > 0x1p-80f && std::fabs(sum) < 0x1p120f)) return;
+  Crossing crossing;
+  intersect_triangle(ray.shear_constants(), triangle.a, triangle.b, triangle.c, crossing);
+  hit.u = crossing.u;
+  hit.v = crossing.v;
+}
+
 }  // namespace boxwood::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

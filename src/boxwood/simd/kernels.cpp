@@ -22,6 +22,19 @@ bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, T
   return true;
 }
 
+bool closest_full_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit,
+                      Hit& full) {
+  KernelRay kernel_ray;
+  if (!prepare(ray, bounds, kernel_ray)) return false;
+  hit = {ray.t_max + 0.0f};
+  closest_hit_one(tree.pool(), kernel_ray, Direct{}, hit);
+  if (hit.is_hit())
+    finish_one(tree, kernel_ray, hit, full);
+  else
+    hit.t = kInfinity;
+  return true;
+}
+
 bool any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit) {
   KernelRay kernel_ray;
   if (!prepare(ray, bounds, kernel_ray)) return false;
@@ -96,9 +109,9 @@ constexpr std::string_view target_name() {
 }
 
 const Kernels* table() {
-  static constexpr Kernels kTable{target_name(),      kWidth,         closest_hit,     any_hit,      all_hits,
-                                  placed_closest_hit, placed_any_hit, placed_all_hits, closest_hits, any_hits,
-                                  finish_hits};
+  static constexpr Kernels kTable{target_name(),   kWidth,       closest_hit,        closest_full_hit,
+                                  any_hit,         all_hits,     placed_closest_hit, placed_any_hit,
+                                  placed_all_hits, closest_hits, any_hits,           finish_hits};
   return &kTable;
 }
 

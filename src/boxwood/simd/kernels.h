@@ -48,6 +48,9 @@ struct Kernels {
 
   /// The crossing of smallest t in [t_min, t_max], equal t by key.
   bool (*closest_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit);
+  /// The same, and what finish_hits says of it in `full`, which is a miss before.
+  bool (*closest_full_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit,
+                           Hit& full);
   /// Whether there is a crossing in [t_min, t_max].
   bool (*any_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit);
   /// Appends every crossing in [t_min, t_max] once for each block that its triangle stands in; in no order.
