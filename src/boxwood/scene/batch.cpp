@@ -85,7 +85,8 @@ void finish_triangles(const Scene::Parts& parts, std::span<const Ray> rays, cons
       const PartMesh only = meshes[0];
       for (std::size_t i = begin; i < end; ++i) name(i, only);
     } else {
-      for (std::size_t i = begin; i < end; ++i) name(i, parts.world.mesh_of(found[i].is_hit() ? found[i].key : 0));
+      for (std::size_t i = begin; i < end; ++i)
+        name(i, parts.world.mesh_of(found[i].is_hit() ? found[i].key : 0));
     }
   }
 }
