@@ -23,8 +23,8 @@ HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
 inline constexpr int kInFlight = 32;
-inline constexpr int kFewNodes =
-    16;  ///< When no more rays than this stand before a node, the others are seen to.
+/// When no more rays than this stand before a node, the others are seen to.
+inline constexpr int kFewNodes = 16;
 
 /// Enough for 17 levels of eight children; deeper trees take one ray at a time.
 inline constexpr int kShortStack = 128;
@@ -107,6 +107,7 @@ class Interleaved {
   HWY_INLINE bool start(RayInFlight& place) {
     while (next_ < order_.size()) {
       const std::uint32_t i = order_[next_++];
+      __builtin_prefetch(&rays_[i] + 8);  // neighbours in the order are mostly neighbours in memory
       if (HWY_UNLIKELY(!prepare(rays_[i], bounds_, place.ray))) {
         unusual_.push_back(i);
         continue;
