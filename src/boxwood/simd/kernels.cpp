@@ -127,21 +127,29 @@ HWY_AFTER_NAMESPACE();
 
 namespace boxwood::simd {
 
-HWY_EXPORT(table);
-
 std::span<const Kernels* const> available_kernels() {
-  // Ask for the choice among all, among all but the best, and so on: Highway dispatches to the best that is
-  // allowed.
+  // Asked by name, and not by Highway's own dispatch, whose choice belongs to the whole program.
   static const std::vector<const Kernels*> all = [] {
-    std::vector<const Kernels*> found;
     const std::int64_t supported = hwy::SupportedTargets();
-    for (std::int64_t targets = HWY_TARGETS & supported; targets; targets &= targets - 1) {
-      hwy::SetSupportedTargetsForTest(targets & -targets);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-      found.push_back(HWY_DYNAMIC_DISPATCH(table)());
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    std::vector<const Kernels*> found;
+    const auto add = [&](std::int64_t target, const Kernels* kernels) {
+      if (supported & target) found.push_back(kernels);
+    };
+#if HWY_TARGETS & HWY_AVX3
+    add(HWY_AVX3, N_AVX3::table());
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    add(HWY_AVX2, N_AVX2::table());
+#endif
+#if HWY_TARGETS & HWY_SSE4
+    add(HWY_SSE4, N_SSE4::table());
+#endif
+#if HWY_TARGETS & HWY_NEON
+    add(HWY_NEON, N_NEON::table());
+#endif
+#if HWY_TARGETS & HWY_WASM
+    add(HWY_WASM, N_WASM::table());
+#endif
     return found;
   }();
   return all;
