@@ -174,7 +174,9 @@ TEST(KernelOracle, SliversAndBladesEdgeOn) {
         return blade.a + (blade.b - blade.a) * u + (blade.c - blade.a) * v + off;
       };
       const Vec3 from = in_plane(), to = in_plane();
-      rays.push_back({from, 0, to - from, random.below(2) ? kInfinity : random.uniform()});
+      // Now and then again and again, so that batches trace it as a bundle.
+      const Ray ray{from, 0, to - from, random.below(2) ? kInfinity : random.uniform()};
+      rays.insert(rays.end(), i % 8 == 0 ? 40 : 1, ray);
     }
   const reference::BruteForce brute(blades);
   boxwood::test::add_limited_rays(rays, brute, random);
