@@ -172,6 +172,12 @@ INSTANTIATE_TEST_SUITE_P(Gallery, KernelScenes,
                          ::testing::Values("stilllife", "spheres:2000", "soup:5000", "terrain:32", "cornell",
                                            "city:500", "duplicates:300"));
 
+TEST(KernelScene, LeavesFillTheirBlocks) {
+  const Scene scene(gallery::make("soup:5000"));
+  const simd::TriangleTree& tree = scene.parts().world.triangles;
+  EXPECT_GT(5000.0 / double(tree.block_count() * kBlockWidth), 0.8);
+}
+
 TriangleMesh scaled_soup(float scale) {
   Random random(6);
   TriangleMesh mesh;

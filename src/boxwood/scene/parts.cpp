@@ -65,7 +65,9 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   const Clip clip = [&triangles](PrimId id, const Box3& region) {
     return triangles[id.value].clipped_box(region);
   };
-  Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, options);
+  BuildOptions in_blocks = options;
+  in_blocks.block_size = kBlockWidth;  // a block is tested at the price of one triangle
+  Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, in_blocks);
   boxes = {};
   const WideBvh<W> wide = collapse<W>(bvh, executor);
   bvh = {};
