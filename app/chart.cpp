@@ -20,9 +20,10 @@ struct Look {
   char marker;                // o: circle, s: square, d: diamond, t: triangle
   const char* dash = "none";  // lets a curve of the same course shine through
 };
-constexpr Look kLooks[] = {{"#000000", 'o'}, {"#CC79A7", 's'}, {"#6F6F6F", 'd', "7 6"},
-                           {"#D55E00", 't'}, {"#56B4E9", 'o'}, {"#0072B2", 's'},
-                           {"#009E73", 'd'}, {"#E69F00", 't'}, {"#7A3E9D", 'o'}};
+constexpr Look kLooks[] = {{"#000000", 'o'}, {"#CC79A7", 's'},        {"#6F6F6F", 'd', "7 6"},
+                           {"#D55E00", 't'}, {"#56B4E9", 'o'},        {"#0072B2", 's'},
+                           {"#009E73", 'd'}, {"#E69F00", 't', "9 7"}, {"#7A3E9D", 'o', "2 7"},
+                           {"#8C510A", 's'}, {"#1B4F4A", 'd'},        {"#B8336A", 't'}};
 
 const Look& look_of(std::size_t series) {
   return kLooks[series % std::size(kLooks)];

@@ -8,65 +8,15 @@
 #include <vector>
 
 #include "boxwood/build/build.h"
-#include "boxwood/reference/brute_force.h"
 #include "boxwood/reference/classic_bvh.h"
 #include "boxwood/reference/flat_bvh.h"
 #include "boxwood/reference/kd_tree.h"
 #include "boxwood/reference/octree.h"
 #include "boxwood/reference/uniform_grid.h"
+#include "rung.h"
+#include "upper_rungs.h"
 
 namespace boxwood::app {
-
-/// A structure that stands over `shapes`, as the measurements see it: a whole batch for each call, so that no
-/// rung pays for being called through a pointer.
-template <ShapeType S>
-class Rung {
- public:
-  virtual ~Rung() = default;
-  virtual void trace(std::span<const Ray> rays, std::span<ShapeHit> hits) const = 0;
-  virtual void count(std::span<const Ray> rays, reference::RivalStatistics& statistics) const = 0;
-  virtual std::size_t size_bytes() const = 0;
-};
-
-/// The judge. It tests every shape, and counts them by that.
-template <ShapeType S>
-class BruteForceRung final : public Rung<S> {
- public:
-  explicit BruteForceRung(std::span<const S> shapes) : shapes_(shapes), brute_force_(shapes) {}
-  void trace(std::span<const Ray> rays, std::span<ShapeHit> hits) const override {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = brute_force_.closest_hit(rays[i]);
-  }
-  void count(std::span<const Ray> rays, reference::RivalStatistics& statistics) const override {
-    statistics.shape_tests += rays.size() * shapes_.size();
-  }
-  std::size_t size_bytes() const override { return brute_force_.size_bytes(); }
-
- private:
-  std::span<const S> shapes_;
-  reference::BruteForce<S> brute_force_;
-};
-
-/// Any structure of reference/, with what must live as long as it does.
-template <ShapeType S, reference::Structure T>
-class StructureRung final : public Rung<S> {
- public:
-  StructureRung(std::span<const S> shapes, T structure, std::shared_ptr<const Bvh> tree = nullptr)
-      : shapes_(shapes), structure_(std::move(structure)), tree_(std::move(tree)) {}
-  void trace(std::span<const Ray> rays, std::span<ShapeHit> hits) const override {
-    reference::NoRivalStatistics none;
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      hits[i] = reference::closest_hit(structure_, shapes_, rays[i], none);
-  }
-  void count(std::span<const Ray> rays, reference::RivalStatistics& statistics) const override {
-    for (const Ray& ray : rays) (void)reference::closest_hit(structure_, shapes_, ray, statistics);
-  }
-  std::size_t size_bytes() const override { return structure_.size_bytes(); }
-
- private:
-  std::span<const S> shapes_;
-  T structure_;
-  std::shared_ptr<const Bvh> tree_;
-};
 
 /// How to stand on a rung.
 template <ShapeType S>
@@ -75,7 +25,7 @@ struct RungRecipe {
   std::function<std::unique_ptr<Rung<S>>(std::span<const S>)> build;
 };
 
-/// The first is brute force.
+/// The first is brute force. The kernels' rungs are there for triangles, on a machine that has kernels.
 template <ShapeType S>
 std::vector<RungRecipe<S>> rung_recipes() {
   using namespace reference;
@@ -100,7 +50,7 @@ std::vector<RungRecipe<S>> rung_recipes() {
     };
   };
 
-  return {
+  std::vector<RungRecipe<S>> recipes{
       {"brute force",
        [](Shapes shapes) -> std::unique_ptr<Rung<S>> { return std::make_unique<BruteForceRung<S>>(shapes); }},
       {"seed BVH",
@@ -117,10 +67,26 @@ std::vector<RungRecipe<S>> rung_recipes() {
       {"nearer child first", ordered(Method::longest_axis)},
       {"binned SAH", ordered(Method::binned_sah)},
       {"sweep SAH", ordered(Method::sweep_sah)},
+      {"wide tree",
+       [](Shapes shapes) -> std::unique_ptr<Rung<S>> {
+         return std::make_unique<StructureRung<S, WideTree>>(shapes, wide_tree(boxes(shapes)));
+       }},
       {"kd-tree", space_splitting(std::type_identity<KdTree>{})},
       {"octree", space_splitting(std::type_identity<Octree>{})},
       {"uniform grid", space_splitting(std::type_identity<UniformGrid>{})},
   };
+  if constexpr (std::is_same_v<S, Triangle>) {
+    const auto scene = [](bool in_batches) {
+      return [in_batches](Shapes shapes) -> std::unique_ptr<Rung<S>> {
+        return std::make_unique<SceneRung>(shapes, in_batches);
+      };
+    };
+    const auto wide = std::find_if(recipes.begin(), recipes.end(),
+                                   [](const RungRecipe<S>& recipe) { return recipe.name == "wide tree"; });
+    if (simd::kernels())
+      recipes.insert(wide + 1, {{"SIMD kernel", scene(false)}, {"SIMD kernel, batch", scene(true)}});
+  }
+  return recipes;
 }
 
 }  // namespace boxwood::app

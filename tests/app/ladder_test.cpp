@@ -9,6 +9,7 @@
 
 #include "boxwood/core/error.h"
 #include "boxwood/gallery/gallery.h"
+#include "boxwood/simd/kernels.h"
 #include "chart.h"
 #include "flat_shapes.h"
 #include "ladder_report.h"
@@ -37,19 +38,36 @@ const GrowthReport& find(const std::vector<GrowthReport>& growth, const std::str
 }
 
 TEST(Ladder, ClimbsEveryRungAndAllAgree) {
-  const std::vector<std::string> names{
-      "brute force", "seed BVH", "flat, no recursion", "nearer child first", "binned SAH", "sweep SAH",
-      "kd-tree",     "octree",   "uniform grid"};
+  std::vector<std::string> names{"brute force", "seed BVH",  "flat, no recursion", "nearer child first",
+                                 "binned SAH",  "sweep SAH", "wide tree"};
+  if (simd::kernels()) names.insert(names.end(), {"SIMD kernel", "SIMD kernel, batch"});
+  const std::size_t first_rival = names.size();
+  names.insert(names.end(), {"kd-tree", "octree", "uniform grid"});
   ASSERT_EQ(small_report().rungs.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const RungReport& rung = small_report().rungs[i];
     EXPECT_EQ(rung.name, names[i]);
     EXPECT_TRUE(rung.agrees) << rung.name;
     EXPECT_GT(rung.mrays_per_s, 0) << rung.name;
-    EXPECT_EQ(rung.repeated_tests_per_ray > 0, i >= 6) << rung.name;
+    EXPECT_EQ(rung.repeated_tests_per_ray > 0, i >= first_rival) << rung.name;
   }
   EXPECT_EQ(small_report().rungs[0].shape_tests_per_ray, 3000);
   EXPECT_EQ(small_report().rungs[1].box_tests_per_ray, small_report().rungs[2].box_tests_per_ray);
+}
+
+TEST(Ladder, TheUpperRungsAskOneTree) {
+  if (!simd::kernels()) return;
+  const auto rung = [](std::string_view name) {
+    for (const RungReport& report : small_report().rungs)
+      if (report.name == name) return report;
+    throw std::out_of_range(std::string(name));
+  };
+  const RungReport wide = rung("wide tree"), single = rung("SIMD kernel"), batch = rung("SIMD kernel, batch");
+  EXPECT_EQ(single.box_tests_per_ray, batch.box_tests_per_ray);
+  EXPECT_EQ(single.shape_tests_per_ray, batch.shape_tests_per_ray);
+  if (simd::kernels()->width != 8) return;
+  EXPECT_EQ(single.box_tests_per_ray, wide.box_tests_per_ray);
+  EXPECT_EQ(single.shape_tests_per_ray, wide.shape_tests_per_ray);
 }
 
 TEST(Ladder, FindsTheExponentsOfTheory) {
@@ -110,7 +128,7 @@ TEST(Ladder, WritesTheJsonThatItPromises) {
   EXPECT_EQ(json.at("scene"), "soup:3000");
   EXPECT_EQ(json.at("primitives"), 3000);
   EXPECT_EQ(json.at("rays"), 3000);
-  ASSERT_EQ(json.at("rungs").size(), 9u);
+  ASSERT_EQ(json.at("rungs").size(), small_report().rungs.size());
   for (const auto& rung : json.at("rungs")) {
     EXPECT_TRUE(rung.at("name").is_string());
     EXPECT_TRUE(rung.at("agrees").is_boolean());
@@ -118,7 +136,7 @@ TEST(Ladder, WritesTheJsonThatItPromises) {
                             "repeated_tests_per_ray", "bytes_per_primitive"})
       EXPECT_TRUE(rung.at(key).is_number()) << key;
   }
-  ASSERT_EQ(json.at("growth").size(), 9u);
+  ASSERT_EQ(json.at("growth").size(), small_report().rungs.size());
   for (const auto& rung : json.at("growth")) {
     EXPECT_TRUE(rung.at("rung").is_string());
     EXPECT_TRUE(rung.at("exponent").is_number());
@@ -137,7 +155,7 @@ TEST(Ladder, DrawsACurveForEachRungInBothPanels) {
   for (std::size_t at = svg.find("class=\"curve\""); at != std::string::npos;
        at = svg.find("class=\"curve\"", at + 1))
     ++curves;
-  EXPECT_EQ(curves, 18u);
+  EXPECT_EQ(curves, 2 * small_report().rungs.size());
 }
 
 TEST(Ladder, PrintsATableWithAllRungs) {
