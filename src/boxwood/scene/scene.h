@@ -35,6 +35,9 @@ struct SceneStatistics {
   double build_ms = 0;
 };
 
+/// Answers are the same bits on every machine in the floating-point mode that a program starts with: rounding
+/// to nearest, denormals kept. A thread that flushes denormals to zero gets answers as watertight as any,
+/// whose last bits may differ where numbers below 1e-38 come in.
 class Scene {
  public:
   /// Checks and copies the geometry and builds the trees.
