@@ -270,8 +270,8 @@ TEST(KernelOracle, KeysDecideTies) {
   triangles.insert(triangles.end(), triangles.begin(), triangles.begin() + 150);
   std::vector<std::uint32_t> keys(triangles.size());
   Random random(2);
-  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = static_cast<std::uint32_t>(i) * 4'700'000u;
-  keys.back() = 0x7ffffffeu;
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = static_cast<std::uint32_t>(i) * 9'500'000u;
+  keys.back() = TriangleHit::kNone - 1;
   for (std::size_t i = keys.size(); i > 1; --i)
     std::swap(keys[i - 1], keys[random.below(static_cast<std::uint32_t>(i))]);
   const std::vector<Ray> rays = rays_for(triangles);
