@@ -152,14 +152,16 @@ class Bundle {
     HWY_ALIGN std::uint32_t key[kBundle], block[kBundle], lane[kBundle];
     const hn::RebindToUnsigned<DIB> du;
     hn::Store(limit_, DB(), t);
-    hn::Store(hn::BitCast(du, key_), du, key);
+    hn::Store(hn::BitCast(du, hn::Xor(key_, hn::Set(DIB(), kTurned))), du, key);
     hn::Store(hn::BitCast(du, block_), du, block);
     hn::Store(hn::BitCast(du, lane_), du, lane);
     for (std::uint32_t i = 0; i < kBundle; ++i) output(i, TriangleHit{t[i], key[i], block[i], lane[i]});
   }
 
  private:
-  static constexpr std::int32_t kNoKey = 0x7fffffff;
+  /// Keys are compared as signed numbers, with the highest bit turned round: so no key is the largest.
+  static constexpr std::int32_t kTurned = std::numeric_limits<std::int32_t>::min();
+  static constexpr std::int32_t kNoKey = std::numeric_limits<std::int32_t>::max();
 
   /// The constants with which no plane is met before the first ray meets it, nor left after the last has left
   /// it. The products are taken at both ends of the interval; the slack is doubled for their rounding.
@@ -268,7 +270,7 @@ class Bundle {
     }
     t = hn::Add(hn::Min(hn::Max(t, entry), exit), hn::Zero(d));
     const auto in_range = hn::And(hn::Le(entry, exit), hn::And(hn::Ge(t, t_min_), hn::Le(t, limit_)));
-    const auto key = hn::Set(di, static_cast<std::int32_t>(block.key[lane]));
+    const auto key = hn::Set(di, static_cast<std::int32_t>(block.key[lane]) ^ kTurned);
     const auto comes_first = hn::Or(hn::Lt(t, limit_), hn::RebindMask(d, hn::Lt(key, key_)));
     const auto taken = hn::And(hn::And(crossed, in_range), comes_first);
     if (hn::AllFalse(d, taken)) return;
