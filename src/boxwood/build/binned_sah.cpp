@@ -89,8 +89,15 @@ Step<BinnedSahSplitter::Share> BinnedSahSplitter::step(Range range, Plan plan, c
 }
 
 BinnedSahSplitter::Share BinnedSahSplitter::take_apart(Range range, const Share& share) const {
-  Share single{items_.subspan(range.begin, range.size()), room_.data() + range.begin, false, share.box,
-               share.centers};
+  // A few are worked on where the cache keeps them: a thread is done with them before it takes the next
+  // apart.
+  struct Bench {
+    Item items[kTakeApart], room[kTakeApart];
+  };
+  thread_local Bench bench;
+  const bool are_few = range.size() <= kTakeApart;
+  Share single{are_few ? std::span(bench.items, range.size()) : items_.subspan(range.begin, range.size()),
+               are_few ? bench.room : room_.data() + range.begin, false, share.box, share.centers};
   Item* out = single.items.data();
   for (const Group& group : share.items) {
     const Item* first = order_.items.data() + first_of(group);

@@ -1,6 +1,7 @@
 #include "boxwood/build/morton_order.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "boxwood/core/radix_sort.h"
 
@@ -120,28 +121,33 @@ MortonOrder in_morton_order(std::span<const Item> items, const Reach& centers, s
   else
     order.ids = RawArray<PrimId>(count);
 
-  // Fetch the items of each block, and cut it into groups.
-  const RawArray<Group> sparse(count);
-  std::vector<std::size_t> before(blocks + 1, 0);
+  // Fetch the items of each block, and cut it into groups. Blocks put theirs down as they come, so that no
+  // more memory is touched than there are groups.
+  const RawArray<Group> mixed(count);
+  std::atomic<std::size_t> taken = 0;
+  std::vector<std::size_t> place(blocks), before(blocks + 1, 0);
   parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
     const std::size_t first = block * kBlock, size = std::min(kBlock, count - first);
     RawArray<Item> own;
     if (keep == Keep::ids) own = RawArray<Item>(size);
     Item* fetched = keep == Keep::ids ? own.data() : order.items.data() + first;
     for (std::size_t i = 0; i < size; ++i) fetched[i] = items[std::uint32_t(keys[first + i])];
-    GroupMaker maker(keys.data() + first, fetched, std::uint32_t(first), group_size, sparse.data() + first);
+    const RawArray<Group> groups(size);
+    GroupMaker maker(keys.data() + first, fetched, std::uint32_t(first), group_size, groups.data());
     maker.cut(0, std::uint32_t(size));
     before[block + 1] = maker.count();
+    place[block] = taken.fetch_add(maker.count());
+    std::copy_n(groups.data(), maker.count(), mixed.data() + place[block]);
     if (keep == Keep::ids)
       for (std::size_t i = 0; i < size; ++i) order.ids[first + i] = fetched[i].prim_id;
   });
 
-  // Move the blocks' groups together.
+  // Bring the blocks' groups into order.
   for (std::size_t block = 0; block < blocks; ++block) before[block + 1] += before[block];
   order.groups = RawArray<Group>(before[blocks]);
   parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-    const Group* from = sparse.data() + block * kBlock;
-    std::copy(from, from + (before[block + 1] - before[block]), order.groups.data() + before[block]);
+    std::copy_n(mixed.data() + place[block], before[block + 1] - before[block],
+                order.groups.data() + before[block]);
   });
   return order;
 }

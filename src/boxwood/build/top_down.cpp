@@ -5,8 +5,9 @@
 
 namespace boxwood {
 
-std::vector<BvhNode> squeeze(std::span<const BvhNode> sparse, std::vector<NodeRun> runs, Executor& executor) {
-  // Runs were noted as they were made: bring them into the order of their places, and count what lies before.
+std::vector<BvhNode> in_order(const BvhNode* nodes, std::vector<NodeRun> runs, Executor& executor) {
+  // Runs were noted as they were made: bring them into the order of their numbers, and count what lies
+  // before.
   std::sort(runs.begin(), runs.end(), [](NodeRun a, NodeRun b) { return a.begin < b.begin; });
   std::vector<std::uint32_t> moved_to(runs.size() + 1, 0);
   for (std::size_t i = 0; i < runs.size(); ++i) moved_to[i + 1] = moved_to[i] + runs[i].count;
@@ -15,7 +16,7 @@ std::vector<BvhNode> squeeze(std::span<const BvhNode> sparse, std::vector<NodeRu
   parallel_for(executor, 0, runs.size(), 1, [&](std::size_t i) {
     const NodeRun run = runs[i];
     for (std::uint32_t k = 0; k < run.count; ++k) {
-      BvhNode node = sparse[run.begin + k];
+      BvhNode node = nodes[run.place + k];
       if (!node.is_leaf()) {
         // Children lie in the same run, or begin one.
         std::size_t of = i;

@@ -3,16 +3,19 @@
 // All top-down builders do the same: look at a range of primitives, make it a leaf or split it in two, go on
 // with both halves. They differ in one decision, which a Splitter makes; the rest is here, once:
 //
-//  - Large halves are two tasks. Each subtree owns a part of one node array that is large enough for its
-//    worst case (n primitives need at most 2n - 2 nodes below their root), so nobody waits and nobody's work
-//    moves anybody else's. A small subtree fills its part from the front, and where the parts are not full
-//    they are moved together at the end. The result is in depth-first order whatever ran when.
+//  - Large halves are two tasks. Each subtree owns a part of the numbers up to 2n - 1 that is large enough
+//  for
+//    its worst case (n primitives need at most 2n - 2 nodes below their root), so nobody waits and nobody's
+//    work moves anybody else's. A small subtree uses up its numbers from the front. What lies in memory is
+//    only nodes that there are, in the order in which they were made; at the end they are put into the order
+//    of their numbers. The result is in depth-first order whatever ran when.
 //  - Depth. ceil(log2(n / leaf_size)) halvings always suffice; when only that
 //    many levels are left, the driver asks for halvings, so a leaf is larger
 //    than leaf_size only where max_depth leaves no choice.
 //  - Primitives with an empty box get a subtree of their own beside all others, which no query enters.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <concepts>
 #include <mutex>
@@ -61,13 +64,13 @@ concept Splitter = requires(S& splitter, Range range, Plan plan, const typename 
   {splitter.write_leaf(range, share, out)};
 };
 
-/// Nodes that lie side by side in an array with gaps.
+/// Nodes numbered from `begin` on, and where they lie.
 struct NodeRun {
-  std::uint32_t begin, count;
+  std::uint32_t begin, count, place;
 };
 
-/// Moves the runs of `sparse` together, in the order of their places; children are found where they went.
-std::vector<BvhNode> squeeze(std::span<const BvhNode> sparse, std::vector<NodeRun> runs, Executor& executor);
+/// Puts the runs of `nodes` in the order of their numbers; children are found where they went.
+std::vector<BvhNode> in_order(const BvhNode* nodes, std::vector<NodeRun> runs, Executor& executor);
 
 template <Splitter S>
 class TopDown {
@@ -90,9 +93,10 @@ class TopDown {
     nodes_ = RawArray<BvhNode>(2 * std::size_t(count) - 1);
     bvh.prim_ids.resize(count);
     prim_ids_ = bvh.prim_ids;
-    runs_.push_back({0, 1});
-    grow(0, 1, {0, count}, 0, splitter_.root());
-    bvh.nodes = squeeze({nodes_.data(), nodes_.size()}, std::move(runs_), executor_);
+    runs_.push_back({0, 1, 0});
+    taken_ = 1;
+    grow(nodes_[0], 1, {0, count}, 0, splitter_.root());
+    bvh.nodes = in_order(nodes_.data(), std::move(runs_), executor_);
     return bvh;
   }
 
@@ -102,36 +106,42 @@ class TopDown {
   /// Smaller ranges are not worth a task, nor a word about progress.
   static constexpr std::uint32_t kTaskSize = 4096;
 
-  /// Grows the subtree of `range` from nodes_[node_index]; its descendants go to nodes_[base] and behind.
-  void grow(std::uint32_t node_index, std::uint32_t base, Range range, int depth, const Share& share) {
+  /// Grows the subtree of `range` from `node`; its descendants are numbered from `base` on.
+  void grow(BvhNode& node, std::uint32_t base, Range range, int depth, const Share& share) {
     if (range.size() <= kTaskSize) {
-      std::uint32_t next = base;
-      grow_small(node_index, next, range, depth, share);
-      if (next > base) add_run({base, next - base});
+      Small small{RawArray<BvhNode>(2 * std::size_t(range.size())), base};
+      grow_small(node, small, range, depth, share);
+      if (small.count > 0) std::copy_n(small.nodes.data(), small.count, &nodes_[add_run(base, small.count)]);
       return meter_.advance(range.size());
     }
     const Step<Share> step = decide(range, depth, share);
     if (step.middle == range.begin) {
-      make_leaf(node_index, step.box, range, share);
+      make_leaf(node, step.box, range, share);
       return meter_.advance(range.size());
     }
     meter_.advance(0);
-    nodes_[node_index] = {step.box, base, 0};
-    add_run({base, 2});
+    node = {step.box, base, 0};
+    BvhNode* const children = &nodes_[add_run(base, 2)];
     const Range left{range.begin, step.middle}, right{step.middle, range.end};
-    executor_.both([&] { grow(base, base + 2, left, depth + 1, step.left); },
-                   [&] { grow(base + 1, base + 2 * left.size(), right, depth + 1, step.right); });
+    executor_.both([&] { grow(children[0], base + 2, left, depth + 1, step.left); },
+                   [&] { grow(children[1], base + 2 * left.size(), right, depth + 1, step.right); });
   }
 
-  /// The same for a range that is one task: nodes_[next] is the next free one.
-  void grow_small(std::uint32_t node_index, std::uint32_t& next, Range range, int depth, const Share& share) {
+  /// The nodes of a task, which stay in the cache until it is done.
+  struct Small {
+    RawArray<BvhNode> nodes;
+    std::uint32_t base, count = 0;
+  };
+
+  /// The same for a range that is one task.
+  void grow_small(BvhNode& node, Small& small, Range range, int depth, const Share& share) {
     const Step<Share> step = decide(range, depth, share);
-    if (step.middle == range.begin) return make_leaf(node_index, step.box, range, share);
-    const std::uint32_t children = next;
-    next += 2;
-    nodes_[node_index] = {step.box, children, 0};
-    grow_small(children, next, {range.begin, step.middle}, depth + 1, step.left);
-    grow_small(children + 1, next, {step.middle, range.end}, depth + 1, step.right);
+    if (step.middle == range.begin) return make_leaf(node, step.box, range, share);
+    node = {step.box, small.base + small.count, 0};
+    BvhNode* const children = &small.nodes[small.count];
+    small.count += 2;
+    grow_small(children[0], small, {range.begin, step.middle}, depth + 1, step.left);
+    grow_small(children[1], small, {step.middle, range.end}, depth + 1, step.right);
   }
 
   Step<Share> decide(Range range, int depth, const Share& share) {
@@ -157,17 +167,21 @@ class TopDown {
     return levels_left <= levels_needed ? Plan::halve : Plan::choose;
   }
 
-  void make_leaf(std::uint32_t node_index, const Box3& box, Range range, const Share& share) {
-    nodes_[node_index] = {box, range.begin, range.size()};
+  void make_leaf(BvhNode& node, const Box3& box, Range range, const Share& share) {
+    node = {box, range.begin, range.size()};
     const Range full{range.begin, min(range.end, full_count_)};
     if (full.begin < full.end) splitter_.write_leaf(full, share, prim_ids_.subspan(full.begin, full.size()));
     for (std::uint32_t i = max(range.begin, full_count_); i < range.end; ++i)
       prim_ids_[i] = empty_boxes_[i - full_count_];
   }
 
-  void add_run(NodeRun run) {
+  /// Makes room for `count` nodes, which are numbered from `begin` on. Returns their place.
+  std::uint32_t add_run(std::uint32_t begin, std::uint32_t count) {
     std::lock_guard lock(runs_mutex_);
-    runs_.push_back(run);
+    const std::uint32_t place = taken_;
+    taken_ += count;
+    runs_.push_back({begin, count, place});
+    return place;
   }
 
   static std::uint32_t min(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
@@ -181,7 +195,8 @@ class TopDown {
   const bool may_halve_;
   Executor& executor_;
   Meter& meter_;
-  RawArray<BvhNode> nodes_;  // with gaps
+  RawArray<BvhNode> nodes_;
+  std::uint32_t taken_ = 0;  // of nodes_
   std::vector<NodeRun> runs_;
   std::mutex runs_mutex_;
   std::span<PrimId> prim_ids_;

@@ -1,6 +1,5 @@
 #include "boxwood/simd/huge_buffer.h"
 
-#include <cstring>
 #include <new>
 #include <utility>
 
@@ -26,7 +25,6 @@ HugeBuffer::HugeBuffer(std::size_t size) : size_(size) {
   // A request only: without huge pages everything works, a little slower.
   if (size >= kHugePage) madvise(data_, size, MADV_HUGEPAGE);
 #endif
-  std::memset(data_, 0, size);
 }
 
 HugeBuffer::~HugeBuffer() {

@@ -9,7 +9,7 @@
 
 namespace boxwood::simd {
 
-/// A block of zeroed bytes that can be moved but not copied.
+/// A block of bytes that can be moved but not copied; nobody has written to it yet.
 class HugeBuffer {
  public:
   HugeBuffer() = default;

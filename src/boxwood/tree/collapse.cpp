@@ -1,6 +1,7 @@
 #include "boxwood/tree/collapse.h"
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <stdexcept>
 
@@ -31,7 +32,10 @@ template <int W>
 class Collapser {
  public:
   Collapser(const Bvh& bvh, Executor& executor, WideCost cost)
-      : bvh_(bvh), executor_(executor), cost_(cost), plans_(bvh.nodes.size()) {}
+      : bvh_(bvh),
+        executor_(executor),
+        cost_(cost),
+        plans_(std::make_unique_for_overwrite<Plan<W>[]>(bvh.nodes.size())) {}
 
   WideBvh<W> run() {
     WideBvh<W> wide;
@@ -291,7 +295,7 @@ class Collapser {
   const Bvh& bvh_;
   Executor& executor_;
   const WideCost cost_;
-  std::vector<Plan<W>> plans_;
+  const std::unique_ptr<Plan<W>[]> plans_;  ///< A plan for each binary node.
   std::vector<bool> is_top_;
 };
 
