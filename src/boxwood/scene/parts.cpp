@@ -46,32 +46,39 @@ void index_meshes(Part& part, std::size_t count) {
 template <int W>
 simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const BuildOptions& options,
                                    Executor& executor) {
-  // Fetch the corners once, in the order of the keys.
+  // Tell the builder the boxes, in the order of the keys. Triangles stay in their meshes until their place is
+  // known: a copy in between costs more time than it saves, and memory.
   std::size_t count = 0;
   for (const PartMesh& mesh : part.meshes) count += primitive_count(desc.geometries[mesh.geometry_id.value]);
   index_meshes(part, count);
-  const RawArray<Triangle> triangles(count);
   RawArray<Box3> boxes(count);
   for (const PartMesh& part_mesh : part.meshes) {
     const auto& mesh = std::get<TriangleMesh>(desc.geometries[part_mesh.geometry_id.value].shapes);
-    parallel_for(executor, 0, mesh.indices.size(), kGrain, [&](std::size_t i) {
-      const Triangle triangle = triangle_of(mesh, PrimId(i));
-      triangles[part_mesh.first_key + i] = triangle;
-      boxes[part_mesh.first_key + i] = triangle.box();
-    });
+    parallel_for(executor, 0, mesh.indices.size(), kGrain,
+                 [&](std::size_t i) { boxes[part_mesh.first_key + i] = triangle_of(mesh, PrimId(i)).box(); });
   }
 
-  // Build and collapse; let go of what the next step does not need.
-  const Clip clip = [&triangles](PrimId id, const Box3& region) {
-    return triangles[id.value].clipped_box(region);
+  std::vector<const TriangleMesh*> mesh_of_part;
+  for (const PartMesh& mesh : part.meshes)
+    mesh_of_part.push_back(&std::get<TriangleMesh>(desc.geometries[mesh.geometry_id.value].shapes));
+  const auto triangle_of_key = [&](PrimId key) {
+    const PartMesh& mesh = part.mesh_of(key.value);
+    return triangle_of(*mesh_of_part[std::size_t(&mesh - part.meshes.data())],
+                       PrimId(key.value - mesh.first_key));
   };
+
+  // Build and collapse; let go of what the next step does not need.
+  const Clip clip = [&](PrimId key, const Box3& region) { return triangle_of_key(key).clipped_box(region); };
   BuildOptions in_blocks = options;
   in_blocks.block_size = kBlockWidth;  // a block is tested at the price of one triangle
   Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, in_blocks);
   boxes = {};
   const WideBvh<W> wide = collapse<W>(bvh, executor);
   bvh = {};
-  return simd::TriangleTree(wide, std::span<const Triangle>(triangles.data(), count), {}, executor);
+  const simd::TriangleTree::Fetch fetch = [&](const PrimId* keys, Triangle* triangles) {
+    for (int lane = 0; lane < kBlockWidth; ++lane) triangles[lane] = triangle_of_key(keys[lane]);
+  };
+  return simd::TriangleTree(wide, fetch, executor);
 }
 
 /// Builds a tree over `items`, puts them into leaf order and makes prim_ids count along.

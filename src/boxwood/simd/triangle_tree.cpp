@@ -28,6 +28,20 @@ int find_max_stack(const WideBvh<W>& wide) {
 template <int W>
 TriangleTree::TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> triangles,
                            std::span<const std::uint32_t> keys, Executor& executor)
+    : TriangleTree(
+          wide,
+          [triangles](const PrimId* slots, Triangle* out) {
+            for (int lane = 0; lane < kBlockWidth; ++lane) out[lane] = triangles[slots[lane].value];
+          },
+          executor) {
+  if (keys.empty() || is_empty()) return;
+  auto* blocks = reinterpret_cast<TriangleBlock*>(pool_.data() + blocks_at_);
+  for (std::size_t i = 0; i < block_count_; ++i)
+    for (std::uint32_t& key : blocks[i].key) key = keys[key];
+}
+
+template <int W>
+TriangleTree::TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Executor& executor)
     : node_count_(wide.nodes.size()), block_count_(wide.block_count()), width_(W), box_(wide.box) {
   if (wide.is_empty()) return;
   blocks_at_ = node_count_ * sizeof(WideNode<W>);
@@ -56,12 +70,14 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> tri
   auto* blocks = reinterpret_cast<TriangleBlock*>(pool_.data() + blocks_at_);
   parallel_for(executor, 0, block_count_, kGrain, [&](std::size_t i) {
     TriangleBlock& block = *new (blocks + i) TriangleBlock;
+    const PrimId* slots = &wide.slots[i * kBlockWidth];
+    Triangle triangles[kBlockWidth];
+    fetch(slots, triangles);
     for (int lane = 0; lane < kBlockWidth; ++lane) {
-      const PrimId id = wide.slots[i * kBlockWidth + std::size_t(lane)];
-      const Triangle& t = triangles[id.value];
+      const Triangle& t = triangles[lane];
       const float v[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
       for (int k = 0; k < 9; ++k) block.v[k / 3][k % 3][lane] = v[k];
-      block.key[lane] = keys.empty() ? id.value : keys[id.value];
+      block.key[lane] = slots[lane].value;
     }
   });
 }
@@ -88,6 +104,8 @@ WideBvh<W> TriangleTree::unpack() const {
   return wide;
 }
 
+template TriangleTree::TriangleTree(const WideBvh<4>&, const Fetch&, Executor&);
+template TriangleTree::TriangleTree(const WideBvh<8>&, const Fetch&, Executor&);
 template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
                                     std::span<const std::uint32_t>, Executor&);
 template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,

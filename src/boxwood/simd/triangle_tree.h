@@ -6,6 +6,7 @@
 // is the same coordinate of all four.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "boxwood/core/parallel.h"
@@ -32,8 +33,14 @@ class TriangleTree {
 
   TriangleTree() = default;
 
-  /// Packs `wide`; its slots pick the triangles. No keys: each triangle's is its number. The executor shows
-  /// in the time only. Throws std::length_error when the pool would be larger than 8 GB.
+  /// Fetches the triangles of a block: writes those of kBlockWidth slots. Called by several threads at once.
+  using Fetch = std::function<void(const PrimId* slots, Triangle* triangles)>;
+
+  /// Packs `wide`; its slots pick the triangles, and are their keys. The executor shows in the time only.
+  /// Throws std::length_error when the pool would be larger than 8 GB.
+  template <int W>
+  TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Executor& executor);
+  /// The same for triangles in an array. No keys: each triangle's is its number.
   template <int W>
   TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> triangles,
                std::span<const std::uint32_t> keys, Executor& executor);
@@ -88,6 +95,8 @@ class TriangleTree {
   Box3 box_;
 };
 
+extern template TriangleTree::TriangleTree(const WideBvh<4>&, const Fetch&, Executor&);
+extern template TriangleTree::TriangleTree(const WideBvh<8>&, const Fetch&, Executor&);
 extern template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
                                            std::span<const std::uint32_t>, Executor&);
 extern template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
