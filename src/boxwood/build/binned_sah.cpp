@@ -16,7 +16,7 @@ constexpr std::size_t kParallelSize = 1 << 16, kBlock = 1 << 14;
 constexpr std::uint32_t kFew = 4, kLookAgain = 64;
 
 /// Larger ranges are worked on as groups of at most kGroupSize primitives.
-constexpr std::uint32_t kTakeApart = 256, kGroupSize = 8;
+constexpr std::uint32_t kTakeApart = 128, kGroupSize = 8;
 
 /// Adds all items to `all` with `add(T&, items)`; `all` is empty before. `merge(T&, const T&)` adds two.
 template <class T, class Add, class Merge>

@@ -1,5 +1,7 @@
 #include "boxwood/scene/description.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace boxwood {
@@ -19,17 +21,33 @@ bool is_usable(Vec3 p) {
   return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate;
 }
 
-void check_mesh(const TriangleMesh& mesh, const std::string& name) {
+[[noreturn]] void refuse_vertex(const TriangleMesh& mesh, const std::string& name) {
+  std::size_t i = 0;
+  while (is_usable(mesh.positions[i])) ++i;
+  fail(name + ", vertex " + std::to_string(i) + " is " + show(mesh.positions[i]) +
+       ", expected finite coordinates of at most 2^126");
+}
+
+[[noreturn]] void refuse_index(const TriangleMesh& mesh, const std::string& name) {
   const std::size_t vertices = mesh.positions.size();
-  for (std::size_t i = 0; i < vertices; ++i)
-    if (!is_usable(mesh.positions[i]))
-      fail(name + ", vertex " + std::to_string(i) + " is " + show(mesh.positions[i]) +
-           ", expected finite coordinates of at most 2^126");
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+  for (std::size_t i = 0;; ++i)
     for (const std::uint32_t index : mesh.indices[i])
       if (index >= vertices)
         fail(name + ", triangle " + std::to_string(i) + " has index " + std::to_string(index) +
              ", but there are " + std::to_string(vertices) + " vertices");
+}
+
+void check_mesh(const TriangleMesh& mesh, const std::string& name) {
+  // Look at all without a branch, which the compiler turns into vectors; only a failure is looked for.
+  unsigned is_bad = 0;
+  for (const Vec3& p : mesh.positions)
+    is_bad |= unsigned(!(std::abs(p.x) <= kMaxCoordinate)) | unsigned(!(std::abs(p.y) <= kMaxCoordinate)) |
+              unsigned(!(std::abs(p.z) <= kMaxCoordinate));
+  if (is_bad) refuse_vertex(mesh, name);
+  std::uint32_t largest = 0;
+  for (const auto& [i, j, k] : mesh.indices) largest = std::max(std::max(largest, i), std::max(j, k));
+  const std::size_t vertices = mesh.positions.size();
+  if (!mesh.indices.empty() && largest >= vertices) refuse_index(mesh, name);
   const auto check_length = [&](std::size_t length, const char* what) {
     if (length != 0 && length != vertices)
       fail(name + " has " + std::to_string(length) + " " + what + ", expected none or one for each of the " +
