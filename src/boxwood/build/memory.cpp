@@ -35,7 +35,7 @@ double bytes_for(double count, const BuildOptions& options) {
   const int threads =
       options.executor != nullptr ? options.executor->concurrency() : default_executor().concurrency();
 
-  // The tree with gaps and without them stand side by side for a moment.
+  // The nodes as they were made and in order stand side by side for a moment.
   const double growing = kItem + working_bytes(options.method) + kNodes + kTree;
   // Later the tree is changed, with a parent for each node, and put in order again.
   const double tries = options.reinsertion_rounds > 0 ? 2 * options.reinsertion_share : 0;
