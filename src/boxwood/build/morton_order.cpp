@@ -1,8 +1,10 @@
 #include "boxwood/build/morton_order.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 
+#include "boxwood/core/morton.h"
 #include "boxwood/core/radix_sort.h"
 
 namespace boxwood {
@@ -80,15 +82,16 @@ class GroupMaker {
   std::uint32_t count_ = 0;
 };
 
-/// The bits of each lane at every third place (core/morton.h), for three axes at once.
-std::uint32_t interleave(std::array<std::int32_t, 4> cell) {
-  std::array<std::uint32_t, 4> x;
-  for (int k = 0; k < 4; ++k) x[k] = std::uint32_t(cell[k]);
-  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 16) & 0x030000ff;
-  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 8) & 0x0300f00f;
-  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 4) & 0x030c30c3;
-  for (int k = 0; k < 4; ++k) x[k] = (x[k] | x[k] << 2) & 0x09249249;
-  return x[0] | x[1] << 1 | x[2] << 2;
+/// spread_bits_by_3 of every number that a cell has on an axis.
+constexpr auto kSpread = [] {
+  std::array<std::uint32_t, 1024> spread{};
+  for (std::uint32_t i = 0; i < spread.size(); ++i) spread[i] = spread_bits_by_3(i);
+  return spread;
+}();
+
+std::uint32_t interleave(const std::array<std::int32_t, 4>& cell) {
+  return kSpread[std::size_t(cell[0])] | kSpread[std::size_t(cell[1])] << 1 |
+         kSpread[std::size_t(cell[2])] << 2;
 }
 
 /// The code in the upper half, the place in `items` in the lower; sorted.
