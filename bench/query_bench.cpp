@@ -1,4 +1,7 @@
 // query_bench: how many questions a second does one thread answer, by question and by shape?
+#include <map>
+#include <string>
+
 #include "boxwood/boxwood.h"
 #include "workload.h"
 
@@ -75,21 +78,40 @@ BENCHMARK_CAPTURE(all, spheres, balls)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(point, terrain, terrain)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(point, spheres, balls)->Unit(benchmark::kMillisecond);
 
-/// The same question through the hall, where a scene keeps its shapes itself.
-void scene_closest(benchmark::State& state) {
+/// The same question through the hall, where kernels answer: one ray at a time, and all at once.
+const Scene& scene(const char* name) {
+  static std::map<std::string, Scene> made;
+  if (const auto at = made.find(name); at != made.end()) return at->second;
   SceneDesc desc;
   TriangleMesh mesh;
-  for (const Triangle& t : triangles("terrain:512")) {
+  for (const Triangle& t : triangles(name)) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), {t.a, t.b, t.c});
     mesh.indices.push_back({first, first + 1, first + 2});
   }
   desc.add(std::move(mesh));
-  const Scene scene(std::move(desc), BuildOptions::best());
-  measure_rays(state, mixed_rays(scene.bounds(), kRays),
-               [&](const Ray& ray) { return scene.closest_hit(ray).t; });
+  return made.emplace(name, Scene(std::move(desc), BuildOptions::best())).first->second;
 }
-BENCHMARK(scene_closest)->Name("closest/terrain_as_scene")->Unit(benchmark::kMillisecond);
+
+void scene_closest(benchmark::State& state, const char* name) {
+  const Scene& hall = scene(name);
+  measure_rays(state, mixed_rays(hall.bounds(), kRays),
+               [&](const Ray& ray) { return hall.closest_hit(ray).t; });
+}
+
+void scene_batch(benchmark::State& state, const char* name) {
+  const Scene& hall = scene(name);
+  const std::vector<Ray> rays = mixed_rays(hall.bounds(), kRays);
+  std::vector<Hit> hits(rays.size());
+  for (auto _ : state) hall.closest_hit(rays, hits, &serial_executor());
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * rays.size()));
+  report_hits(state, rays.size(), [&](std::size_t i) { return hits[i].t; });
+}
+
+BENCHMARK_CAPTURE(scene_closest, terrain, "terrain:512")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(scene_closest, soup, "soup:100000")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(scene_batch, terrain, "terrain:512")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(scene_batch, soup, "soup:100000")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace boxwood::bench

@@ -28,23 +28,28 @@ std::vector<Ray> shadow_rays(const Box3& bounds, std::size_t count);
 
 inline constexpr std::size_t kRays = 1 << 16;
 
-/// Asks `answer(ray)` for the t of each ray, round after round, and counts rays. A miss is +inf.
-template <class Answer>
-void measure_rays(benchmark::State& state, const std::vector<Ray>& rays, const Answer& answer) {
-  for (auto _ : state)
-    for (const Ray& ray : rays) benchmark::DoNotOptimize(answer(ray));
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * rays.size()));
-
+/// Reports how many of `count` rays hit, and the sum of t_of(i). A miss is +inf.
+template <class TOf>
+void report_hits(benchmark::State& state, std::size_t count, const TOf& t_of) {
   std::size_t hits = 0;
   double checksum = 0;
-  for (const Ray& ray : rays) {
-    const float t = answer(ray);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float t = t_of(i);
     if (!(t < kInfinity)) continue;
     ++hits;
     checksum += t;
   }
   state.counters["hits"] = static_cast<double>(hits);
   state.counters["checksum"] = checksum;
+}
+
+/// Asks `answer(ray)` for the t of each ray, round after round, and counts rays. A miss is +inf.
+template <class Answer>
+void measure_rays(benchmark::State& state, const std::vector<Ray>& rays, const Answer& answer) {
+  for (auto _ : state)
+    for (const Ray& ray : rays) benchmark::DoNotOptimize(answer(ray));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * rays.size()));
+  report_hits(state, rays.size(), [&](std::size_t i) { return answer(rays[i]); });
 }
 
 }  // namespace boxwood::bench
