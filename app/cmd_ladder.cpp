@@ -66,7 +66,7 @@ void add_ladder(CLI::App& program) {
   command->footer(
       "Every rung answers the same rays, on one thread, and is compared with brute\n"
       "force to the bit. Then all are climbed again over 100 to 8,000,000 primitives,\n"
-      "as far as a rung can, and over the worst case. Takes about a minute.\n\n" +
+      "as far as a rung can, and over the worst case. Takes a minute or two.\n\n" +
       gallery_help() +
       "\nExamples:\n"
       "  boxwood ladder\n"

@@ -21,7 +21,7 @@ struct LadderOptions {
   std::vector<std::size_t> growth_sizes = {100,    320,     1'000,   3'200,     10'000,
                                            32'000, 100'000, 320'000, 1'000'000, 8'000'000};
   std::vector<std::size_t> worst_case_sizes = {100, 1'000, 10'000};
-  double seconds_per_point = 10;  ///< A rung of the growth stops before a point that would take longer.
+  double seconds_per_point = 8;  ///< A rung of the growth stops before a point that would take longer.
 };
 
 /// One structure over the scene.
