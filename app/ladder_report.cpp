@@ -28,8 +28,7 @@ std::string duration(double ns) {
 }
 
 std::string rung_table(const LadderReport& report) {
-  Table table({"rung", "build ms", "Mrays/s", "speed-up", "boxes/ray", "shapes/ray", "repeated", "bytes/prim",
-               "agrees"});
+  Table table({"rung", "build ms", "Mrays/s", "speed-up", "boxes", "shapes", "repeated", "bytes", "agrees"});
   for (const RungReport& rung : report.rungs)
     table.add({rung.name, with_commas(rung.build_ms, 1),
                fmt::format("{:.{}f}", rung.mrays_per_s, rung.mrays_per_s < 0.1 ? 5 : 3),
@@ -96,18 +95,17 @@ std::string ladder_table(const LadderReport& report) {
   text +=
       "  Half of the rays come from the camera; the others leave, in random directions, where such rays "
       "hit.\n";
-  text += report.brute_force_rays < report.rays
-              ? fmt::format(
-                    "  Brute force traced the first {} of them; all rungs are compared with it on these, and "
-                    "with each "
-                    "other beyond.\n",
-                    with_commas(report.brute_force_rays))
-              : "  All rungs are compared with brute force on all of them.\n";
+  text +=
+      report.brute_force_rays < report.rays
+          ? fmt::format(
+                "  Brute force traced the first {} of them; all rungs are compared with it on these, and\n"
+                "  with each other beyond.\n",
+                with_commas(report.brute_force_rays))
+          : "  All rungs are compared with brute force on all of them.\n";
   text += "\n" + rung_table(report);
   text +=
-      "  boxes: for the kd-tree planes met, for the grid cells entered; repeated: shapes that the same ray "
-      "had tested "
-      "before\n";
+      "  boxes and shapes tested per ray; for the kd-tree planes met, for the grid cells entered;\n"
+      "  repeated: shapes that the same ray had tested before; bytes per primitive\n";
 
   text += fmt::format("\nGrowth over {}:N, rays as above\n\n", report.growth_family);
   text += growth_table(report.growth) + "\n" + growth_words(report);
@@ -118,8 +116,8 @@ std::string ladder_table(const LadderReport& report) {
     const auto least = std::min_element(report.worst_case.begin(), report.worst_case.end(),
                                         [](const auto& a, const auto& b) { return a.exponent < b.exponent; });
     text += fmt::format(
-        "\n  No box, plane or cell tells one from another: the least exponent is {:.2f}, all fall back to "
-        "N.\n",
+        "\n  No box, plane or cell tells one from another: the least exponent is {:.2f}, all fall back\n"
+        "  to N.\n",
         least->exponent);
   }
   return text;
