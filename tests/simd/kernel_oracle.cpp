@@ -145,8 +145,7 @@ std::vector<bool> expect_batch_equals_single(const Kernels& kernels, const Trian
     }
     if (is_hit != hit.is_hit() || is_hit_too != hit.is_hit())
       complain(rays[i], i, "any_hit differs from closest_hit");
-    if (!same_bits(hits[i].t, hit.t) || hits[i].is_hit() != hit.is_hit() ||
-        (hit.is_hit() && hits[i].key != hit.key))
+    if (!same_bits(hits[i].t, hit.t) || hits[i].is_hit() != hit.is_hit() || hits[i].key != hit.key)
       complain(rays[i], i, "closest_hits differs from closest_hit");
     if (hits[i].is_hit() && tree.block_at(hits[i].block).key[hits[i].lane] != hits[i].key)
       complain(rays[i], i, "closest_hits names another triangle's place");
