@@ -7,7 +7,7 @@
 
 namespace boxwood::app {
 
-/// For a terminal of 100 columns, with the conclusions in words.
+/// For a terminal of 104 columns, with the conclusions in words.
 std::string ladder_table(const LadderReport& report);
 
 /// {"scene", "primitives", "rays", "rungs": [{"name", "build_ms", "mrays_per_s", "box_tests_per_ray",
