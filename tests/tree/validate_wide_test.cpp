@@ -169,7 +169,7 @@ TYPED_TEST(ValidateWide, APrimitiveMayStandInSeveralLeavesThatCoverIt) {
 TYPED_TEST(ValidateWide, SaysWhenATreeIsTooDeep) {
   constexpr int W = TypeParam::value;
   const Box3 box{{0, 0, 0}, {1, 1, 1}};
-  for (const int depth : {kMaxDepth, kMaxDepth + 1}) {
+  for (const int depth : {kMaxWideDepth, kMaxWideDepth + 1}) {
     WideBvh<W> wide;
     wide.box = box;
     wide.nodes.resize(static_cast<std::size_t>(depth) + 1);
@@ -178,7 +178,7 @@ TYPED_TEST(ValidateWide, SaysWhenATreeIsTooDeep) {
     wide.nodes.back().set(0, box, ChildRef::leaf(0, 1));
     wide.slots.assign(kBlockWidth, PrimId(0));
     const std::string verdict = validate(wide, std::vector<Box3>{box});
-    EXPECT_EQ(verdict, depth == kMaxDepth ? "" : "node 97 lies at depth 97, deeper than 96");
+    EXPECT_EQ(verdict, depth == kMaxWideDepth ? "" : "node 113 lies at depth 113, deeper than 112");
   }
 }
 

@@ -27,7 +27,7 @@ void traverse_wide(const NodeAt& node_at, Q& query, Statistics& statistics) {
     ChildRef ref;
     float bound;
   };
-  Postponed stack[kMaxDepth * (W - 1) + W];
+  Postponed stack[kMaxWideStack<W>];
   int waiting = 0;
   ChildRef current = ChildRef::node(0);
 

@@ -7,7 +7,7 @@
 // holds.
 //
 // Kernels take ordinary rays only: finite, and of a size at which nothing in a leaf test can overflow. The
-// rest is rare and goes to plain C++ (scalar.h).
+// rest is rare and goes to plain C++ (scene/walk.h over query/traverse_wide.h).
 
 #if defined(BOXWOOD_SIMD_RAY_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_SIMD_RAY_INL_H
@@ -34,8 +34,8 @@ inline constexpr int kWidth = 8;
 #endif
 inline constexpr std::int32_t kRowBytes = 4 * kWidth;
 
-/// Beyond these sizes a leaf test could overflow.
-inline constexpr float kLargestReach = 0x1p36f, kSmallestDirection = 0x1p-30f;
+/// Of the largest component; for a smaller one a leaf test could overflow, as beyond kLargestReach.
+inline constexpr float kSmallestDirection = 0x1p-30f;
 
 using D4 = hn::FixedTag<float, 4>;
 using DI4 = hn::FixedTag<std::int32_t, 4>;
@@ -156,9 +156,7 @@ HWY_INLINE bool prepare(const Ray& ray, const Box3& bounds, KernelRay& out) {
   hn::Store(hn::Xor(near_row, hn::Set(di, kRowBytes)), di, out.far_row);
 
   // The shear: see shape/triangle.h. 1 / d on the longest axis is there already.
-  const Vec3 a = abs(ray.direction);
-  const unsigned beyond_xy = (a.z > a.x) & (a.z > a.y);
-  const unsigned z = beyond_xy << 1 | (static_cast<unsigned>(a.y > a.x) & ~beyond_xy);
+  const int z = longest_axis(abs(ray.direction));
   const auto order = hn::SetTableIndices(d, kAxes[z]);
   const V4 rz = hn::Broadcast<2>(hn::TableLookupLanes(r, order));
   const V4 sheared = hn::Mul(hn::TableLookupLanes(dir, order), rz);

@@ -16,9 +16,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-/// Deep enough for kMaxDepth levels that each leave all children but one behind, and some room to store whole
-/// vectors.
-inline constexpr int kStackSize = 96 * (kWidth - 1) + 2 * kWidth;
+/// Room for what any tree leaves behind, and to store whole vectors.
+inline constexpr int kStackSize = kMaxWideStack<kWidth> + kWidth;
 
 /// The bottom of a stack: neither node nor leaf.
 inline constexpr std::uint32_t kBottom = 2;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 namespace boxwood::simd {
 namespace {
@@ -49,8 +50,11 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Executor&
   if (size >= kUnit << 28)
     throw std::length_error("the tree and its triangles need more than 8 GB, which 28 bits cannot address");
   pool_ = HugeBuffer(size);
-  is_ordinary_ = max_component(abs(box_.lower)) <= 0x1p36f && max_component(abs(box_.upper)) <= 0x1p36f;
+  is_ordinary_ = max(max_component(abs(box_.lower)), max_component(abs(box_.upper))) <= kLargestReach;
   max_stack_ = find_max_stack(wide);
+  if (max_stack_ > kMaxWideStack<W>)
+    throw std::length_error("a walk of the tree leaves up to " + std::to_string(max_stack_) +
+                            " children for later, expected at most " + std::to_string(kMaxWideStack<W>));
 
   // Copy the nodes, with references in units.
   constexpr std::size_t kGrain = 1 << 10;

@@ -27,6 +27,9 @@ struct alignas(32) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 160);
 
+/// A leaf test cannot overflow where no coordinate, and none less that of a ray's origin, is larger.
+inline constexpr float kLargestReach = 0x1p36f;
+
 class TriangleTree {
  public:
   static constexpr std::size_t kUnit = 32;
@@ -37,7 +40,8 @@ class TriangleTree {
   using Fetch = std::function<void(const PrimId* slots, Triangle* triangles)>;
 
   /// Packs `wide`; its slots pick the triangles, and are their keys. The executor shows in the time only.
-  /// Throws std::length_error when the pool would be larger than 8 GB.
+  /// Throws std::length_error when the pool would be larger than 8 GB, or a walk needs more room than
+  /// kMaxWideStack.
   template <int W>
   TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Executor& executor);
   /// The same for triangles in an array. No keys: each triangle's is its number.

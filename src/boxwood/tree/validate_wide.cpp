@@ -21,8 +21,8 @@ std::string check_links(const WideBvh<W>& wide) {
   depth[0] = 0;
   for (std::size_t i = 0; i < wide.nodes.size(); ++i) {
     if (depth[i] == kUnreached) return "node " + text(i) + " has no parent";
-    if (depth[i] > kMaxDepth)
-      return "node " + text(i) + " lies at depth " + text(depth[i]) + ", deeper than " + text(kMaxDepth);
+    if (depth[i] > kMaxWideDepth)
+      return "node " + text(i) + " lies at depth " + text(depth[i]) + ", deeper than " + text(kMaxWideDepth);
     for (int c = 0; c < W; ++c) {
       const ChildRef ref = wide.nodes[i].children[c];
       if (ref.is_empty()) {

@@ -13,19 +13,27 @@
 //  4. The box of a child holds the boxes below it; each block belongs to one leaf.
 //  5. Each primitive with a box that is not empty stands in one block, inside the box of its leaf; in a tree
 //     with spatial splits it may stand in several leaves, whose boxes together reach from end to end of it.
-//  6. No node lies deeper than kMaxDepth (bvh.h).
+//  6. No node lies deeper than kMaxWideDepth, so that a query can keep its stack in a fixed array.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "boxwood/core/box.h"
 #include "boxwood/core/id.h"
+#include "boxwood/tree/bvh.h"
 
 namespace boxwood {
 
 inline constexpr int kBlockWidth = 4;     ///< Primitives of a block.
 inline constexpr int kMaxLeafBlocks = 3;  ///< Blocks of a leaf.
+
+/// A binary leaf at kMaxDepth may hold any number of primitives, fewer than 2^32 = 4^16; dealt out to four
+/// children or more at each level, they need at most 16 further levels.
+inline constexpr int kMaxWideDepth = kMaxDepth + 16;
+/// The most children that a walk can have left for later: at each level all but the one that it goes to, and
+/// at the last all.
+template <int W>
+inline constexpr int kMaxWideStack = kMaxWideDepth*(W - 1) + W;
 
 /// Where a child leads: 28 bits of index, two for the number of blocks, and two that say what it is: 0 a
 /// node, 1 a leaf (without blocks: an empty child). Kernels use the other two values for themselves.
