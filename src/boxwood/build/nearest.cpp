@@ -33,34 +33,11 @@ constexpr std::array<LowBits, 16> kLowBits = make_low_bits();
 
 }  // namespace
 
-namespace everywhere {
-#include "boxwood/build/nearest-inl.h"
-}
-
-#if defined(__GNUC__) && defined(__x86_64__)
-#define BOXWOOD_NEAREST_AVX2 1
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
-namespace avx2 {
-#include "boxwood/build/nearest-inl.h"
-}
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#endif
+#define BOXWOOD_LOOPS "boxwood/build/nearest-inl.h"
+#include "boxwood/build/every_cpu-inl.h"
 
 void find_nearest(const BoxRow& row, const Scale& scale, std::uint16_t* partner) {
-#if defined(BOXWOOD_NEAREST_AVX2)
-  static const bool has_avx2 = __builtin_cpu_supports("avx2");
-  if (has_avx2) return avx2::find_nearest(row, scale.factor(), partner);
-#endif
-  everywhere::find_nearest(row, scale.factor(), partner);
+  (has_avx2() ? avx2::find_nearest : everywhere::find_nearest)(row, scale.factor(), partner);
 }
 
 }  // namespace boxwood

@@ -33,9 +33,9 @@ inline constexpr std::uint8_t kNext[3] = {1, 2, 0};
 struct HitLanes {
   static constexpr std::size_t kSize = 64;
   std::uint32_t count = 0;
-  HWY_ALIGN float vertices[9][kSize];    // vertex, axis
-  HWY_ALIGN float rays[6][kSize];        // origin, direction
-  HWY_ALIGN double longest_axis[kSize];  // which of x, y, z stands last
+  HWY_ALIGN float vertices[9][kSize];  // vertex, axis
+  HWY_ALIGN float rays[6][kSize];      // origin, direction
+  HWY_ALIGN double last_axis[kSize];   // which of x, y, z stands last
   HWY_ALIGN float u[kSize], v[kSize], sum[kSize];
   HWY_ALIGN float normal[3][kSize];
   std::uint32_t axes[kSize];
@@ -44,9 +44,7 @@ struct HitLanes {
   /// Adds a hit. A miss is worked on like one, but does not count: who hits is hard to foresee.
   HWY_INLINE void add(const TriangleTree& tree, const Ray& ray, const TriangleHit& found,
                       std::uint32_t index) {
-    const Vec3 a = abs(ray.direction);
-    const unsigned beyond_xy = static_cast<unsigned>(a.z > a.x) & static_cast<unsigned>(a.z > a.y);
-    const std::size_t z = beyond_xy << 1 | (static_cast<unsigned>(a.y > a.x) & ~beyond_xy);
+    const auto z = static_cast<std::size_t>(longest_axis(abs(ray.direction)));
     const std::size_t x = kNext[z], y = kNext[x];
     const std::uint32_t is_hit = found.is_hit();
     const auto* rows =
@@ -59,7 +57,7 @@ struct HitLanes {
     const float *origin = &ray.origin.x, *direction = &ray.direction.x;
     rays[0][count] = origin[x], rays[1][count] = origin[y], rays[2][count] = origin[z];
     rays[3][count] = direction[x], rays[4][count] = direction[y], rays[5][count] = direction[z];
-    longest_axis[count] = static_cast<double>(z);
+    last_axis[count] = static_cast<double>(z);
     axes[count] = static_cast<std::uint32_t>(z);
     hit_index[count] = index;
     count += is_hit;
@@ -107,7 +105,7 @@ HWY_INLINE void find_normals(HitLanes& lanes, std::size_t i) {
 
   // Squares are added x, y, z, and the sum of three depends on which comes last.
   const VD xx = hn::Mul(n[0], n[0]), yy = hn::Mul(n[1], n[1]), zz = hn::Mul(n[2], n[2]);
-  const VD axis = hn::Load(d, lanes.longest_axis + i);
+  const VD axis = hn::Load(d, lanes.last_axis + i);
   const auto is_x = hn::Eq(axis, hn::Zero(d)), is_y = hn::Eq(axis, hn::Set(d, 1.0));
   const VD first_two =
       hn::IfThenElse(is_x, hn::Add(zz, xx), hn::IfThenElse(is_y, hn::Add(yy, zz), hn::Add(xx, yy)));
@@ -154,7 +152,7 @@ inline void finish_all(const TriangleTree& tree, std::span<const Ray> rays, cons
   HitLanes lanes;
   std::memset(lanes.vertices, 0, sizeof lanes.vertices);
   std::memset(lanes.rays, 0, sizeof lanes.rays);
-  std::memset(lanes.longest_axis, 0, sizeof lanes.longest_axis);
+  std::memset(lanes.last_axis, 0, sizeof lanes.last_axis);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const TriangleHit& ahead = found[std::min(i + kAhead, rays.size() - 1)];
     const char* block = reinterpret_cast<const char*>(&tree.block_at(ahead.block & (0u - ahead.is_hit())));

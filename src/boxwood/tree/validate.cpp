@@ -67,16 +67,23 @@ std::string check_primitives(const Bvh& bvh) {
   return "";
 }
 
-/// Invariant 5.
-std::string check_boxes(const Bvh& bvh, std::span<const Box3> boxes) {
+/// Invariant 5, the nodes.
+std::string check_children(const Bvh& bvh) {
   for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
     const BvhNode& node = bvh.nodes[i];
-    if (!node.is_leaf()) {
-      for (const std::uint32_t child : {node.first_index, node.first_index + 1})
-        if (!node.box.contains(bvh.nodes[child].box))
-          return node_text(i) + " has a box that does not hold the box of its child, node " + text(child);
-      continue;
-    }
+    if (node.is_leaf()) continue;
+    for (const std::uint32_t child : {node.first_index, node.first_index + 1})
+      if (!node.box.contains(bvh.nodes[child].box))
+        return node_text(i) + " has a box that does not hold the box of its child, node " + text(child);
+  }
+  return "";
+}
+
+/// Invariant 5, the leaves.
+std::string check_leaves(const Bvh& bvh, std::span<const Box3> boxes) {
+  for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
+    const BvhNode& node = bvh.nodes[i];
+    if (!node.is_leaf()) continue;
     for (std::uint32_t k = 0; k < node.count; ++k) {
       const PrimId prim = bvh.prim_ids[node.first_index + k];
       if (!node.box.contains(boxes[prim.value]))
@@ -87,18 +94,13 @@ std::string check_boxes(const Bvh& bvh, std::span<const Box3> boxes) {
   return "";
 }
 
-/// Invariants 4 and 5 where primitives may repeat.
+/// Invariants 4 and 5, the leaves, where primitives may repeat.
 std::string check_parts(const Bvh& bvh, std::span<const Box3> boxes) {
   std::vector<Box3> covered(boxes.size());
   std::vector<std::size_t> seen_in(boxes.size(), bvh.nodes.size());
   for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
     const BvhNode& node = bvh.nodes[i];
-    if (!node.is_leaf()) {
-      for (const std::uint32_t child : {node.first_index, node.first_index + 1})
-        if (!node.box.contains(bvh.nodes[child].box))
-          return node_text(i) + " has a box that does not hold the box of its child, node " + text(child);
-      continue;
-    }
+    if (!node.is_leaf()) continue;
     for (std::uint32_t k = 0; k < node.count; ++k) {
       const std::uint32_t prim = bvh.prim_ids[node.first_index + k].value;
       if (prim >= boxes.size())
@@ -127,10 +129,11 @@ std::string validate(const Bvh& bvh, std::span<const Box3> boxes, Repeats repeat
   if (bvh.nodes.empty()) return "";
 
   // Boxes are looked at last: only then is it safe to follow indices.
+  const bool may_repeat = repeats == Repeats::allowed;
   std::string broken = check_links(bvh);
-  if (repeats == Repeats::allowed) return broken.empty() ? check_parts(bvh, boxes) : broken;
-  if (broken.empty()) broken = check_primitives(bvh);
-  if (broken.empty()) broken = check_boxes(bvh, boxes);
+  if (broken.empty() && !may_repeat) broken = check_primitives(bvh);
+  if (broken.empty()) broken = check_children(bvh);
+  if (broken.empty()) broken = may_repeat ? check_parts(bvh, boxes) : check_leaves(bvh, boxes);
   return broken;
 }
 
