@@ -30,9 +30,9 @@ Bvh build(std::span<const Box3> boxes, const BuildOptions& options = {});
 /// passed on.
 Bvh build(std::span<const Box3> boxes, const Clip& clip, const BuildOptions& options);
 
-/// How much memory build() allocates at most, its result included, for `count` boxes and an executor of that
-/// concurrency; within a factor of two of what it does. With options.split_share: the build with a clip
-/// function.
+/// How much memory build() with these options, their executor among them, allocates at most for `count`
+/// boxes, its result included; within a factor of two of what it does. With options.split_share: the build
+/// with a clip function.
 std::size_t build_memory_bytes(std::size_t count, const BuildOptions& options);
 
 /// The boxes of a range of shapes, in order.

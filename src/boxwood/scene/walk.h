@@ -2,7 +2,8 @@
 //
 // One walk for closest, any and all hits: they differ only in their sink. Below a placement the ray is in
 // object space, and each crossing passes two gates (shape/gate.h): that of its own box, and that of the
-// placement's world box. Plain C++: it answers for the kernels (simd/kernels.h) what they do not take.
+// placement's world box. Plain C++, but for the triangles below a placement, which a kernel (simd/kernels.h)
+// answers for when it takes the ray; for the world's triangles the caller asks it first.
 #pragma once
 
 #include "boxwood/query/traverse_wide.h"

@@ -120,7 +120,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-#include <array>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
