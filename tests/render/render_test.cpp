@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "boxwood/render/camera.h"
-#include "boxwood/render/film.h"
 #include "trace.h"
 
 namespace boxwood::render {
@@ -177,18 +176,6 @@ TEST(Render, ModesHaveNames) {
   for (const Mode mode : {Mode::path, Mode::color, Mode::normal, Mode::depth, Mode::occlusion, Mode::cost})
     EXPECT_EQ(mode_from_name(mode_name(mode)), mode);
   EXPECT_THROW(mode_from_name("fog"), std::invalid_argument);
-}
-
-TEST(Film, DropsWhatIsNotFinite) {
-  Film film(2, 1, 3);
-  std::uint64_t dropped = 0;
-  film.add(0, 0, std::array{1.0f, 2.0f, 3.0f}, dropped);
-  film.add(0, 0, std::array{1.0f, std::nanf(""), 3.0f}, dropped);
-  film.add(0, 0, std::array{kInfinity, 0.0f, 3.0f}, dropped);
-  film.add(0, 0, std::array{3.0f, 2.0f, 1.0f}, dropped);
-  EXPECT_EQ(dropped, 2u);
-  const Image image = film.average();
-  EXPECT_EQ(image.pixels, (std::vector<float>{2, 2, 2, 0, 0, 0}));
 }
 
 }  // namespace

@@ -16,11 +16,20 @@ namespace boxwood::render {
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  /// How many floats a sample has; at most Film::kMaxChannels.
+  /// How many floats a sample has; at most kMaxMainChannels (film.h).
   virtual int channels() const = 0;
   /// Fills `out` with what is seen along `ray`, and adds the rays it traced to `rays`. False when there is
   /// nothing to count (the pixel's mean is then that of its other samples).
   virtual bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, std::uint64_t& rays) const = 0;
+
+  /// The same for many rays at once, with the same answers: `out` has channels() floats for each, and
+  /// `is_counted` what sample() returns. Modes that gain by tracing rays in batches do so here.
+  virtual void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers,
+                           std::span<float> out, std::span<bool> is_counted, std::uint64_t& rays) const {
+    const auto width = static_cast<std::size_t>(channels());
+    for (std::size_t i = 0; i < camera_rays.size(); ++i)
+      is_counted[i] = sample(camera_rays[i], samplers[i], out.subspan(i * width, width), rays);
+  }
 };
 
 /// For samples of three floats.

@@ -1,0 +1,266 @@
+#include "boxwood/render/job.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "boxwood/render/aov.h"
+#include "boxwood/render/noise.h"
+#include "boxwood/render/path.h"
+#include "boxwood/render/picture.h"
+
+namespace boxwood::render {
+namespace {
+
+// Before so many samples the noise of a tile is not trusted: light that is rarely found may not have shown.
+constexpr int kLeastToSettle = 2 * kLeastForNoise;
+// Tasks that are handed out together; only very large pictures have more in a round.
+constexpr std::size_t kMaxTasks = 1 << 20;
+
+const RenderOptions& checked(const RenderOptions& options) {
+  check(options);
+  return options;
+}
+
+/// Channels of the picture itself, of the brightness of half the samples, and of each layer that is a mean.
+std::vector<int> group_sizes(const Integrator& integrator, const Features& features) {
+  std::vector<int> sizes{integrator.channels(), 1};
+  for (const Layer layer : features.layers()) sizes.push_back(static_cast<int>(layer_channels(layer).size()));
+  return sizes;
+}
+
+int share_end(const RenderOptions& options, int index) {
+  return static_cast<int>(std::int64_t(options.samples) * index / options.shard.count);
+}
+
+/// Threads of one machine, by an executor.
+void work_here(RenderJob& job, std::span<const Task> tasks) {
+  Executor& executor = job.options().executor ? *job.options().executor : default_executor();
+  parallel_for(executor, 0, tasks.size(), 1, [&](std::size_t i) {
+    if (!job.is_stopped()) job.add(tasks[i], job.render(tasks[i].unit));
+  });
+}
+
+/// The samples of a unit on their way.
+struct Batch {
+  Batch(std::size_t size, std::size_t channels) : values(size * channels), is_counted(new bool[size]) {
+    rays.reserve(size);
+    samplers.reserve(size);
+    signs.reserve(size);
+  }
+
+  std::vector<Ray> rays;
+  std::vector<Sampler> samplers;  // have drawn what the camera needed
+  std::vector<int> signs;         // from the filter
+  std::vector<float> values;
+  std::unique_ptr<bool[]> is_counted;
+};
+
+bool all_finite(std::span<const float> values) {
+  return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+RenderJob::RenderJob(const Scene& scene, const RenderOptions& options)
+    : scene_(scene),
+      options_(checked(options)),
+      camera_(choose_camera(scene.description(), options.width, options.height)),
+      lens_(camera_, options.width, options.height),
+      filter_(options.filter),
+      integrator_(options.mode == Mode::path ? make_path_tracer(scene, camera_)
+                                             : make_aov(scene, options.mode)),
+      features_(scene, options.layers),
+      first_sample_(share_end(options, options.shard.index - 1)),
+      end_sample_(share_end(options, options.shard.index)),
+      film_(options.width, options.height, group_sizes(*integrator_, features_)),
+      round_{first_sample_, first_sample_},
+      is_settled_(film_.grid().size()) {}
+
+UnitResult RenderJob::render(const Unit& unit) const {
+  const TileArea area = film_.grid().area(unit.tile);
+  const auto samples = static_cast<std::size_t>(unit.count);
+  const auto channels = static_cast<std::size_t>(integrator_->channels());
+  Batch batch(area.pixel_count() * samples, channels);
+
+  // Start a ray for each sample. A picture of one sample takes the middle of each pixel.
+  for (int y = area.y0; y < area.y1; ++y)
+    for (int x = area.x0; x < area.x1; ++x)
+      for (int s = unit.first; s < unit.first + unit.count; ++s) {
+        const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options_.width) +
+                           static_cast<std::uint32_t>(x);
+        Sampler sampler(pixel, static_cast<std::uint32_t>(s));
+        const Vec2 jitter = sampler.next_2d(), lens = sampler.next_2d();
+        const FilterSample place = options_.samples > 1 ? filter_.sample(jitter) : FilterSample{};
+        const Vec2 point{static_cast<float>(x) + 0.5f + place.offset.x,
+                         static_cast<float>(y) + 0.5f + place.offset.y};
+        batch.rays.push_back(lens_.ray(point, lens));
+        batch.samplers.push_back(sampler);
+        batch.signs.push_back(place.sign);
+      }
+
+  // See what they see, and what they hit.
+  UnitResult result{film_.empty_tile(unit.tile)};
+  const std::span<bool> is_counted(batch.is_counted.get(), batch.rays.size());
+  integrator_->sample_many(batch.rays, batch.samplers, batch.values, is_counted, result.rays);
+  std::vector<float> features(batch.rays.size() * features_.channels());
+  std::unique_ptr<bool[]> is_hit;
+  if (!features_.layers().empty()) {
+    is_hit.reset(new bool[batch.rays.size()]);
+    features_.look(batch.rays, features, {is_hit.get(), batch.rays.size()});
+    result.rays += batch.rays.size();
+  }
+
+  // Add it up. A sample that is not finite is left out whole, and counted.
+  for (std::size_t i = 0; i < batch.rays.size(); ++i) {
+    const std::size_t pixel = i / samples;
+    const std::span values = std::span<const float>(batch.values).subspan(i * channels, channels);
+    const std::span seen =
+        std::span<const float>(features).subspan(i * features_.channels(), features_.channels());
+    if ((is_counted[i] && !all_finite(values)) || !all_finite(seen)) {
+      ++result.dropped;
+      continue;
+    }
+    const int sign = batch.signs[i];
+    result.sums.count_sample(pixel);
+    if (is_counted[i]) {
+      result.sums.add(pixel, 0, values, sign);
+      float brightness = 0;
+      for (const float value : values) brightness += value;
+      brightness /= static_cast<float>(channels);
+      if (is_in_half(unit.first + static_cast<int>(i % samples)))
+        result.sums.add(pixel, 1, {&brightness, 1}, sign);
+    }
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < features_.layers().size(); ++k) {
+      const auto size = static_cast<std::size_t>(result.sums.channels(2 + k));
+      if (is_hit[i] || Features::counts_misses(features_.layers()[k]))
+        result.sums.add(pixel, 2 + k, seen.subspan(first, size), sign);
+      first += size;
+    }
+  }
+  return result;
+}
+
+void RenderJob::add(const Task& task, const UnitResult& result) {
+  if (!film_.add(task.unit.tile, task.index, result.sums)) return;
+  rays_ += result.rays;
+  dropped_ += result.dropped;
+  samples_ += result.sums.pixel_count() * static_cast<std::size_t>(task.unit.count);
+  report();
+}
+
+RenderResult RenderJob::run() {
+  return run(work_here);
+}
+
+RenderResult RenderJob::run(const Crew& crew) {
+  while (!is_stopped_) {
+    // The tasks of this round that are left, every tile's first before any tile's second.
+    std::vector<Task> tasks;
+    for (int index = 0; index < round_.unit_count() && !is_stopped_; ++index) {
+      for (std::uint32_t tile = 0; tile < is_settled_.size(); ++tile)
+        if (!is_settled_[tile] && !film_.has(tile, index)) tasks.push_back({round_.unit(tile, index), index});
+      if (tasks.size() < kMaxTasks && index + 1 < round_.unit_count()) continue;
+      crew(*this, tasks);
+      tasks.clear();
+    }
+    if (is_stopped_ || !begin_next_round()) break;
+  }
+
+  RenderResult result;
+  result.image = picture_with_layers();
+  result.is_complete = !is_stopped_;
+  result.rays = rays_;
+  result.dropped_samples = dropped_;
+  result.samples = static_cast<double>(samples_) / (double(options_.width) * options_.height);
+  result.noise = noise_;
+  return result;
+}
+
+/// Whether there is anything left to do.
+bool RenderJob::begin_next_round() {
+  settle_quiet_tiles();
+  if (std::find(is_settled_.begin(), is_settled_.end(), 0) == is_settled_.end()) return false;
+  round_ = next_round(round_, first_sample_, end_sample_);
+  film_.begin_round();
+  samples_expected_ = forecast();
+  return round_.end > round_.begin;
+}
+
+/// Measures the noise, and lets tiles rest that have come down to the target. A whole tile decides on the
+/// samples of all its pixels: a pixel that stopped by its own few samples would stop more often when these
+/// happen to agree, and be biased (Kirk and Arvo, "Unbiased Sampling Techniques for Image Synthesis", 1991).
+void RenderJob::settle_quiet_tiles() {
+  const int samples = round_.end - first_sample_;
+  if (samples < kLeastForNoise) return;
+  const double floor = error_floor(film_), target = options_.noise * options_.noise;
+  double sum = 0;
+  for (std::size_t tile = 0; tile < is_settled_.size(); ++tile) {
+    const auto [error, pixels] = film_.with_tile(tile, [&](const TileSums& sums, std::uint64_t) {
+      return std::pair(tile_error(sums, floor), static_cast<double>(sums.pixel_count()));
+    });
+    sum += error;
+    if (samples >= kLeastToSettle && options_.noise > 0 && error <= target * pixels) is_settled_[tile] = 1;
+  }
+  noise_ = std::sqrt(sum / (double(options_.width) * options_.height));
+}
+
+/// How many samples all pixels will have taken in the end. The variance of a mean falls like 1 / samples, so
+/// a tile's error says how many it will want.
+double RenderJob::forecast() const {
+  const int samples = round_.begin - first_sample_, limit = end_sample_ - first_sample_;
+  const double all_pixels = double(options_.width) * options_.height;
+  if (options_.noise == 0 || samples < kLeastForNoise) return all_pixels * limit;
+  const double floor = error_floor(film_), target = options_.noise * options_.noise;
+  double expected = static_cast<double>(samples_);
+  for (std::size_t tile = 0; tile < is_settled_.size(); ++tile) {
+    if (is_settled_[tile]) continue;
+    const auto [error, pixels] = film_.with_tile(tile, [&](const TileSums& sums, std::uint64_t) {
+      return std::pair(tile_error(sums, floor), static_cast<double>(sums.pixel_count()));
+    });
+    const double wanted = std::max<double>(kLeastToSettle, samples * error / (target * pixels));
+    expected += pixels * std::max(0.0, std::min<double>(wanted, limit) - samples);
+  }
+  return expected;
+}
+
+/// Tells `progress` when no other thread is telling it right now.
+void RenderJob::report() {
+  if (!options_.progress) return;
+  const std::unique_lock lock(progress_mutex_, std::try_to_lock);
+  if (!lock.owns_lock()) return;
+  RenderStatus status;
+  status.rays = rays_;
+  status.samples = static_cast<double>(samples_) / (double(options_.width) * options_.height);
+  status.done = std::min(1.0, static_cast<double>(samples_) / std::max(1.0, samples_expected_));
+  status.noise = noise_;
+  status.is_whole = round_.begin > first_sample_;
+  if (!options_.progress(status)) is_stopped_ = true;
+}
+
+Image RenderJob::picture() const {
+  return picture_of(film_, options_.mode, {});
+}
+
+Image RenderJob::picture_with_layers() const {
+  Image image = picture_of(film_, options_.mode, options_.layers);
+  write_names(image, scene_, lens_, options_);
+  return image;
+}
+
+RenderJob::State RenderJob::state() const {
+  return {round_, is_settled_, rays_, dropped_, samples_, noise_};
+}
+
+void RenderJob::restore(const State& state) {
+  round_ = state.round;
+  is_settled_ = state.is_settled;
+  rays_ = state.rays;
+  dropped_ = state.dropped;
+  samples_ = state.samples;
+  noise_ = state.noise;
+  samples_expected_ = forecast();
+}
+
+}  // namespace boxwood::render
