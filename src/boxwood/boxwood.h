@@ -61,4 +61,5 @@
 #include "boxwood/scene/image.h"
 #include "boxwood/scene/scene.h"
 #include "boxwood/scene/srgb.h"
+#include "boxwood/scene/stream.h"
 #include "boxwood/scene/surface.h"

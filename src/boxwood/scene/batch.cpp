@@ -3,7 +3,8 @@
 // In chunks, one for each task: the kernel takes a chunk's rays in turns and says what each does to the
 // world's triangles, plain C++ answers the few rays that it does not take, and then every answer is worked
 // out. A chunk is long enough that the kernel is rarely short of rays, and its findings stay in the cache.
-#include <algorithm>
+#include "boxwood/scene/batch.h"
+
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,29 +14,12 @@
 namespace boxwood {
 namespace {
 
-constexpr std::size_t kMaxChunk = 4096, kMinChunk = 512;
-
-/// Chunks begin at multiples of this, so that none cuts a tile of a picture, whose rays go the same way.
-constexpr std::size_t kWhole = 64;
+using detail::kMaxChunk;
 
 void check_lengths(std::size_t rays, std::size_t hits) {
   if (rays != hits)
     throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " +
                                 std::to_string(hits) + " hits, expected the same number");
-}
-
-/// Calls body(begin, end) for chunks of `count` rays: some for each thread, so that all end together.
-template <class Body>
-void for_chunks(Executor* given, std::size_t count, const Body& body) {
-  if (count <= kMinChunk) {
-    if (count > 0) body(0, count);
-    return;
-  }
-  Executor& executor = given ? *given : default_executor();
-  const std::size_t share = count / (8 * static_cast<std::size_t>(executor.concurrency()));
-  const std::size_t chunk = std::clamp(share, kMinChunk, kMaxChunk) / kWhole * kWhole;
-  parallel_for(executor, 0, (count + chunk - 1) / chunk, 1,
-               [&](std::size_t i) { body(i * chunk, std::min((i + 1) * chunk, count)); });
 }
 
 /// A thread's memory between a kernel and the answers; taken while in use, because a user's own shape may ask
@@ -93,49 +77,53 @@ void finish_triangles(const Scene::Parts& parts, std::span<const Ray> rays, cons
 
 }  // namespace
 
+namespace detail {
+
+void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* hits) {
+  NoStatistics none;
+  if (!parts.kernels) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = walk_closest(parts, rays[i], none);
+    return;
+  }
+  Scratch scratch;
+  simd::TriangleHit* const found = scratch.found();
+  std::vector<std::uint32_t>& unusual = scratch.unusual();
+  parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, unusual);
+  for (const std::uint32_t i : unusual) found[i] = {};
+  if (parts.is_only_triangles)
+    finish_triangles(parts, rays, found, hits);
+  else
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = add_others(parts, rays[i], found[i]);
+  for (const std::uint32_t i : unusual) hits[i] = walk_closest(parts, rays[i], none);
+}
+
+void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits) {
+  if (!parts.kernels) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = walk_any(parts, rays[i]);
+    return;
+  }
+  Scratch scratch;
+  std::vector<std::uint32_t>& unusual = scratch.unusual();
+  parts.kernels->any_hits(parts.world.triangles, rays, parts.bounds, hits, unusual);
+  for (const std::uint32_t i : unusual) hits[i] = walk_any(parts, rays[i]);
+  if (parts.is_only_triangles) return;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!hits[i]) hits[i] = is_other_hit(parts, rays[i]);
+}
+
+}  // namespace detail
+
 void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor) const {
   check_lengths(rays.size(), hits.size());
-  const Parts& parts = *parts_;
-  for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
-    if (!parts.kernels) {
-      for (std::size_t i = begin; i < end; ++i) hits[i] = closest_hit(rays[i]);
-      return;
-    }
-    const simd::TriangleTree& triangles = parts.world.triangles;
-    Scratch scratch;
-    simd::TriangleHit* const found = scratch.found();
-    std::vector<std::uint32_t>& unusual = scratch.unusual();
-    const std::size_t count = end - begin;
-    parts.kernels->closest_hits(triangles, rays.subspan(begin, count), parts.bounds, found, unusual);
-    for (const std::uint32_t i : unusual) found[i] = {};
-    if (parts.is_only_triangles)
-      finish_triangles(parts, rays.subspan(begin, count), found, &hits[begin]);
-    else
-      for (std::size_t i = 0; i < count; ++i)
-        hits[begin + i] = detail::add_others(parts, rays[begin + i], found[i]);
-    NoStatistics none;
-    for (const std::uint32_t i : unusual)
-      hits[begin + i] = detail::walk_closest(parts, rays[begin + i], none);
+  detail::for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
+    detail::answer_closest(*parts_, rays.subspan(begin, end - begin), &hits[begin]);
   });
 }
 
 void Scene::any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor) const {
   check_lengths(rays.size(), hits.size());
-  const Parts& parts = *parts_;
-  for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
-    if (!parts.kernels) {
-      for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(rays[i]);
-      return;
-    }
-    Scratch scratch;
-    std::vector<std::uint32_t>& unusual = scratch.unusual();
-    bool* const is_hit = &hits[begin];
-    parts.kernels->any_hits(parts.world.triangles, rays.subspan(begin, end - begin), parts.bounds, is_hit,
-                            unusual);
-    for (const std::uint32_t i : unusual) is_hit[i] = detail::walk_any(parts, rays[begin + i]);
-    if (parts.is_only_triangles) return;
-    for (std::size_t i = begin; i < end; ++i)
-      if (!hits[i]) hits[i] = detail::is_other_hit(parts, rays[i]);
+  detail::for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
+    detail::answer_any(*parts_, rays.subspan(begin, end - begin), &hits[begin]);
   });
 }
 

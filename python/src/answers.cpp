@@ -1,0 +1,303 @@
+#include "answers.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include <nanobind/stl/string.h>
+
+#include "docstrings.h"
+
+namespace boxwood::python {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+void put(float* to, Vec3 v) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+Vec3 vec(const float* from) {
+  return {from[0], from[1], from[2]};
+}
+
+/// None is all bits set, which is -1.
+std::int32_t signed_id(std::uint32_t value) {
+  return static_cast<std::int32_t>(value);
+}
+
+template <class T>
+Column<T> column(const Block& block, std::size_t offset, std::size_t width = 0) {
+  return {reinterpret_cast<T*>(block->data() + offset), width, {}};
+}
+
+/// Describes a result in a line: "<boxwood.Hits: shape (480, 640), 1234 of 307200 hit>".
+std::string describe(const char* type, const Shape& shape, const float* t, const char* verb) {
+  const std::size_t count = count_of(shape);
+  const auto found = std::count_if(t, t + count, [](float value) { return value < kInfinity; });
+  return std::string("<boxwood.") + type + ": shape " + to_string(shape) + ", " + std::to_string(found) +
+         " of " + std::to_string(count) + " " + verb + ">";
+}
+
+}  // namespace
+
+HitColumns::HitColumns(std::size_t count, Block& block) {
+  Layout layout;
+  const std::size_t at_t = layout.add<float>(count), at_primitive = layout.add<std::int32_t>(count),
+                    at_geometry = layout.add<std::int32_t>(count),
+                    at_instance = layout.add<std::int32_t>(count), at_part = layout.add<std::int32_t>(count),
+                    at_uv = layout.add<float>(2 * count), at_normal = layout.add<float>(3 * count),
+                    at_position = layout.add<float>(3 * count);
+  block = layout.allocate();
+  t = column<float>(block, at_t);
+  ids.primitive_id = column<std::int32_t>(block, at_primitive);
+  ids.geometry_id = column<std::int32_t>(block, at_geometry);
+  ids.instance_id = column<std::int32_t>(block, at_instance);
+  part = column<std::int32_t>(block, at_part);
+  uv = column<float>(block, at_uv, 2);
+  normal = column<float>(block, at_normal, 3);
+  position = column<float>(block, at_position, 3);
+}
+
+void HitColumns::write(std::size_t begin, std::span<const Ray> rays, std::span<const Hit> hits) {
+  // A few at a time and column by column, so that hits come from the nearest cache and each loop writes in
+  // order.
+  constexpr std::size_t kStep = 128;
+  for (std::size_t first = 0; first < hits.size(); first += kStep) {
+    const std::size_t last = std::min(first + kStep, hits.size());
+    for (std::size_t i = first; i < last; ++i) t.data[begin + i] = hits[i].t;
+    for (std::size_t i = first; i < last; ++i)
+      ids.primitive_id.data[begin + i] = signed_id(hits[i].primitive_id.value);
+    for (std::size_t i = first; i < last; ++i)
+      ids.geometry_id.data[begin + i] = signed_id(hits[i].geometry_id.value);
+    for (std::size_t i = first; i < last; ++i)
+      ids.instance_id.data[begin + i] = signed_id(hits[i].instance_id.value);
+    for (std::size_t i = first; i < last; ++i) part.data[begin + i] = static_cast<std::int32_t>(hits[i].part);
+    for (std::size_t i = first; i < last; ++i) {
+      uv.data[2 * (begin + i)] = hits[i].u;
+      uv.data[2 * (begin + i) + 1] = hits[i].v;
+    }
+    // Without a branch, because who hits is hard to foresee: a miss adds NaN to what is there.
+    for (std::size_t i = first; i < last; ++i) {
+      const float nothing = hits[i].is_hit() ? 0.0f : kNan;
+      put(normal.data + 3 * (begin + i), hits[i].normal + splat(nothing));
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      const float t_or_nan = hits[i].is_hit() ? hits[i].t : kNan;
+      put(position.data + 3 * (begin + i), rays[i].at(t_or_nan));
+    }
+  }
+}
+
+Points::Points(const Shape& leading) : shape(leading) {
+  const std::size_t count = count_of(shape);
+  Layout layout;
+  const std::size_t at_distance = layout.add<float>(count), at_primitive = layout.add<std::int32_t>(count),
+                    at_geometry = layout.add<std::int32_t>(count),
+                    at_instance = layout.add<std::int32_t>(count), at_position = layout.add<float>(3 * count);
+  block = layout.allocate();
+  distance = column<float>(block, at_distance);
+  ids.primitive_id = column<std::int32_t>(block, at_primitive);
+  ids.geometry_id = column<std::int32_t>(block, at_geometry);
+  ids.instance_id = column<std::int32_t>(block, at_instance);
+  position = column<float>(block, at_position, 3);
+}
+
+void Points::write(std::size_t begin, std::span<const ScenePoint> points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ScenePoint& p = points[i];
+    distance.data[begin + i] = p.distance;
+    ids.primitive_id.data[begin + i] = signed_id(p.primitive_id.value);
+    ids.geometry_id.data[begin + i] = signed_id(p.geometry_id.value);
+    ids.instance_id.data[begin + i] = signed_id(p.instance_id.value);
+    put(position.data + 3 * (begin + i), p.distance < kInfinity ? p.position : splat(kNan));
+  }
+}
+
+Surfaces::Surfaces(const Shape& leading) : shape(leading) {
+  const std::size_t count = count_of(shape);
+  Layout layout;
+  const std::size_t at_position = layout.add<float>(3 * count), at_error = layout.add<float>(3 * count),
+                    at_normal = layout.add<float>(3 * count), at_shading = layout.add<float>(3 * count),
+                    at_uv = layout.add<float>(2 * count);
+  block = layout.allocate();
+  position = column<float>(block, at_position, 3);
+  error = column<float>(block, at_error, 3);
+  normal = column<float>(block, at_normal, 3);
+  shading_normal = column<float>(block, at_shading, 3);
+  uv = column<float>(block, at_uv, 2);
+}
+
+void Surfaces::write(std::size_t i, const Surface* surface) {
+  put(position.data + 3 * i, surface ? surface->position : splat(kNan));
+  put(error.data + 3 * i, surface ? surface->error : splat(kNan));
+  put(normal.data + 3 * i, surface ? surface->normal : splat(kNan));
+  put(shading_normal.data + 3 * i, surface ? surface->shading_normal : splat(kNan));
+  uv.data[2 * i] = surface ? surface->uv.x : kNan;
+  uv.data[2 * i + 1] = surface ? surface->uv.y : kNan;
+}
+
+Surface Surfaces::read(std::size_t i) const {
+  Surface surface;
+  surface.position = vec(position.data + 3 * i);
+  surface.error = vec(error.data + 3 * i);
+  surface.normal = vec(normal.data + 3 * i);
+  surface.shading_normal = vec(shading_normal.data + 3 * i);
+  return surface;
+}
+
+void bind_answers(nb::module_& module) {
+  using nb::sig;
+
+  // What Hits and AllHits have in common; `rows` is the leading shape of their columns.
+  const auto bind_columns = [](auto& type, auto rows, const char* scope) {
+    using Result = typename std::decay_t<decltype(type)>::Type;
+    (void)scope;
+    type.def_prop_ro(
+        "t", [rows](Result& r) { return r.columns.t.get(r.block, rows(r)); },
+        sig("def t(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Hit_t);
+    type.def_prop_ro(
+        "primitive_id", [rows](Result& r) { return r.columns.ids.primitive_id.get(r.block, rows(r)); },
+        sig("def primitive_id(self) -> numpy.typing.NDArray[numpy.int32]"),
+        "The triangle of the mesh, or the shape of its list, counted from 0; -1 for a miss.");
+    type.def_prop_ro(
+        "geometry_id", [rows](Result& r) { return r.columns.ids.geometry_id.get(r.block, rows(r)); },
+        sig("def geometry_id(self) -> numpy.typing.NDArray[numpy.int32]"),
+        "The geometry of the scene; -1 for a miss.");
+    type.def_prop_ro(
+        "instance_id", [rows](Result& r) { return r.columns.ids.instance_id.get(r.block, rows(r)); },
+        sig("def instance_id(self) -> numpy.typing.NDArray[numpy.int32]"),
+        "The instance of the scene; -1 for a miss.");
+    type.def_prop_ro(
+        "part", [rows](Result& r) { return r.columns.part.get(r.block, rows(r)); },
+        sig("def part(self) -> numpy.typing.NDArray[numpy.int32]"), doc::Crossing_part);
+    type.def_prop_ro(
+        "uv", [rows](Result& r) { return r.columns.uv.get(r.block, rows(r)); },
+        sig("def uv(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Crossing_u);
+    type.def_prop_ro(
+        "normal", [rows](Result& r) { return r.columns.normal.get(r.block, rows(r)); },
+        sig("def normal(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Hit_normal);
+    type.def_prop_ro(
+        "position", [rows](Result& r) { return r.columns.position.get(r.block, rows(r)); },
+        sig("def position(self) -> numpy.typing.NDArray[numpy.float32]"),
+        "origin + t * direction; NaN for a miss.");
+  };
+  const auto shape_tuple = [](const Shape& shape) {
+    nb::list sizes;
+    for (const std::size_t size : shape) sizes.append(size);
+    return nb::tuple(sizes);
+  };
+  const char* const shape_sig = "def shape(self) -> tuple[int, ...]";
+
+  nb::class_<Hits> hits(
+      module, "Hits",
+      "Closest hits as columns, one row for each ray; a miss has t = inf, ids of -1, and NaN for "
+      "normal and position.");
+  bind_columns(
+      hits, [](const Hits& h) { return h.shape; }, "Hits");
+  hits.def_prop_ro(
+          "shape", [shape_tuple](const Hits& h) { return shape_tuple(h.shape); }, sig(shape_sig),
+          "Of the rays; () for a single one.")
+      .def("__len__",
+           [](const Hits& h) {
+             if (h.shape.empty()) throw nb::type_error("len() of the hit of a single ray");
+             return h.shape[0];
+           })
+      .def("__repr__", [](const Hits& h) { return describe("Hits", h.shape, h.columns.t.data, "hit"); });
+
+  nb::class_<AllHits> all_hits(module, "AllHits",
+                               "Every crossing of each ray as columns: the rows offsets[i] to offsets[i + "
+                               "1], the end not included, are "
+                               "those of ray i, by t.");
+  bind_columns(
+      all_hits, [](const AllHits& h) { return Shape{h.count}; }, "AllHits");
+  all_hits
+      .def_prop_ro(
+          "offsets", [](AllHits& h) { return h.offsets.get(h.offset_block, Shape{count_of(h.shape) + 1}); },
+          sig("def offsets(self) -> numpy.typing.NDArray[numpy.int64]"),
+          "(k + 1,) for k rays; rays of more than one dimension are counted row by row.")
+      .def_prop_ro(
+          "shape", [shape_tuple](const AllHits& h) { return shape_tuple(h.shape); }, sig(shape_sig),
+          "Of the rays.")
+      .def(
+          "__len__", [](const AllHits& h) { return h.count; }, "How many crossings there are.")
+      .def("__repr__", [](const AllHits& h) {
+        return "<boxwood.AllHits: " + std::to_string(h.count) + " crossings of rays of shape " +
+               to_string(h.shape) + ">";
+      });
+
+  nb::class_<Points>(
+      module, "Points",
+      "Nearest points as columns; none within reach has distance = inf, ids of -1, position NaN.")
+      .def_prop_ro(
+          "distance", [](Points& p) { return p.distance.get(p.block, p.shape); },
+          sig("def distance(self) -> numpy.typing.NDArray[numpy.float32]"), "From the point asked for.")
+      .def_prop_ro(
+          "position", [](Points& p) { return p.position.get(p.block, p.shape); },
+          sig("def position(self) -> numpy.typing.NDArray[numpy.float32]"), "On the surface.")
+      .def_prop_ro(
+          "primitive_id", [](Points& p) { return p.ids.primitive_id.get(p.block, p.shape); },
+          sig("def primitive_id(self) -> numpy.typing.NDArray[numpy.int32]"), "As in Hits.")
+      .def_prop_ro(
+          "geometry_id", [](Points& p) { return p.ids.geometry_id.get(p.block, p.shape); },
+          sig("def geometry_id(self) -> numpy.typing.NDArray[numpy.int32]"), "As in Hits.")
+      .def_prop_ro(
+          "instance_id", [](Points& p) { return p.ids.instance_id.get(p.block, p.shape); },
+          sig("def instance_id(self) -> numpy.typing.NDArray[numpy.int32]"), "As in Hits.")
+      .def_prop_ro(
+          "shape", [shape_tuple](const Points& p) { return shape_tuple(p.shape); }, sig(shape_sig),
+          "Of the points asked for.")
+      .def("__repr__", [](const Points& p) { return describe("Points", p.shape, p.distance.data, "found"); });
+
+  nb::class_<Surfaces>(module, "Surfaces", "Places of hits as columns, in world space; NaN for a miss.")
+      .def_prop_ro(
+          "position", [](Surfaces& s) { return s.position.get(s.block, s.shape); },
+          sig("def position(self) -> numpy.typing.NDArray[numpy.float32]"), "On the surface, within `error`.")
+      .def_prop_ro(
+          "error", [](Surfaces& s) { return s.error.get(s.block, s.shape); },
+          sig("def error(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Surface_error)
+      .def_prop_ro(
+          "normal", [](Surfaces& s) { return s.normal.get(s.block, s.shape); },
+          sig("def normal(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Surface_normal)
+      .def_prop_ro(
+          "shading_normal", [](Surfaces& s) { return s.shading_normal.get(s.block, s.shape); },
+          sig("def shading_normal(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Surface_shading_normal)
+      .def_prop_ro(
+          "uv", [](Surfaces& s) { return s.uv.get(s.block, s.shape); },
+          sig("def uv(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Surface_uv)
+      .def_prop_ro(
+          "shape", [shape_tuple](const Surfaces& s) { return shape_tuple(s.shape); }, sig(shape_sig),
+          "Of the rays.")
+      .def(
+          "spawn",
+          [](const Surfaces& s, nb::handle directions) {
+            // Every place may send out several rays: (k, 3) places and (n, k, 3) directions.
+            Rows rows("directions", directions, {3});
+            if (rows.shape().size() < s.shape.size() ||
+                !std::equal(s.shape.rbegin(), s.shape.rend(), rows.shape().rbegin()))
+              throw std::invalid_argument("directions: got leading shape " + to_string(rows.shape()) +
+                                          ", expected it to end with the shape of the surfaces, " +
+                                          to_string(s.shape));
+            const std::size_t count = rows.count(), places = count_of(s.shape);
+            Layout layout;
+            layout.add<float>(3 * count);
+            const Block block = layout.allocate();
+            float* const origins = reinterpret_cast<float*>(block->data());
+            for (std::size_t i = 0; i < count; ++i) {
+              float direction[3];
+              rows.read(i, 1, direction, 3);
+              put(origins + 3 * i, s.read(i % places).spawn(vec(direction)).origin);
+            }
+            return make_array(block, origins, rows.shape(), 3);
+          },
+          nb::arg("directions"),
+          sig("def spawn(self, directions: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float32]"),
+          (std::string(doc::Surface_spawn) +
+           "\n\nReturns the origins of these rays, of the shape of `directions`, which ends with that of the "
+           "surfaces:\n(n, k, 3) sends n rays from each of k places.")
+              .c_str());
+}
+
+}  // namespace boxwood::python

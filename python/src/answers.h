@@ -1,0 +1,121 @@
+// answers.h: where do the answers stand that Python sees as NumPy arrays?
+//
+// Each result owns one block of memory with a column for each field, written once, by the threads that work
+// the answers out. An array over a column is made when somebody asks for it, and shares the block: nothing is
+// copied, and a result of one ray costs no seven arrays.
+#pragma once
+
+#include <memory>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include "boxwood/scene/scene.h"
+#include "boxwood/scene/surface.h"
+#include "boxwood/simd/huge_buffer.h"
+#include "rows.h"
+
+namespace boxwood::python {
+
+/// Memory that results and their arrays share.
+using Block = std::shared_ptr<simd::HugeBuffer>;
+
+/// Lays columns one behind the other, each on a cache line of its own.
+class Layout {
+ public:
+  template <class T>
+  std::size_t add(std::size_t count) {
+    const std::size_t at = size_;
+    size_ = (size_ + count * sizeof(T) + 63) / 64 * 64;
+    return at;
+  }
+  Block allocate() const { return std::make_shared<simd::HugeBuffer>(size_ > 0 ? size_ : 64); }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+/// An array over `data` that keeps `block` alive; rows of `width` numbers, or single numbers for width 0.
+template <class T>
+nb::object make_array(const Block& block, T* data, const Shape& leading, std::size_t width = 0) {
+  Shape shape = leading;
+  if (width > 0) shape.push_back(width);
+  nb::capsule owner(new Block(block), [](void* p) noexcept { delete static_cast<Block*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner));
+}
+
+/// One field of a result: where it stands in the block, and the array once somebody has asked.
+template <class T>
+struct Column {
+  T* data = nullptr;
+  std::size_t width = 0;
+  nb::object array;
+
+  nb::object get(const Block& block, const Shape& shape) {
+    if (!array.is_valid()) array = make_array(block, data, shape, width);
+    return array;
+  }
+};
+
+/// Which primitive of what: -1 for none.
+struct Ids {
+  Column<std::int32_t> primitive_id, geometry_id, instance_id;
+};
+
+/// The columns of hits, and how one is written.
+struct HitColumns {
+  Column<float> t, uv, normal, position;
+  Ids ids;
+  Column<std::int32_t> part;
+
+  HitColumns() = default;
+  /// Room for `count` hits.
+  HitColumns(std::size_t count, Block& block);
+  /// Writes hits[i], which answers rays[i], as row begin + i.
+  void write(std::size_t begin, std::span<const Ray> rays, std::span<const Hit> hits);
+};
+
+/// Closest hits: one row for each ray.
+struct Hits {
+  Shape shape;
+  Block block;
+  HitColumns columns;
+};
+
+/// All hits: row offsets[i] to offsets[i + 1] for ray i.
+struct AllHits {
+  Shape shape;
+  std::size_t count = 0;  // of hits
+  Block offset_block, block;
+  Column<std::int64_t> offsets;
+  HitColumns columns;
+};
+
+/// Nearest points: one row for each point.
+struct Points {
+  Shape shape;
+  Block block;
+  Column<float> distance, position;
+  Ids ids;
+
+  Points() = default;
+  explicit Points(const Shape& shape);
+  void write(std::size_t begin, std::span<const ScenePoint> points);
+};
+
+/// Places of hits: one row for each ray.
+struct Surfaces {
+  Shape shape;
+  Block block;
+  Column<float> position, error, normal, shading_normal, uv;
+
+  Surfaces() = default;
+  explicit Surfaces(const Shape& shape);
+  /// Row `i`; without a surface, NaN.
+  void write(std::size_t i, const Surface* surface);
+  Surface read(std::size_t i) const;
+};
+
+void bind_answers(nb::module_& module);
+
+}  // namespace boxwood::python

@@ -1,0 +1,428 @@
+#include "describe.h"
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "docstrings.h"
+#include "rows.h"
+
+namespace boxwood::python {
+namespace {
+
+constexpr float kLargest = 0x1p126f;  // as check() in scene/description.h
+
+/// A count and a noun: "1 mesh", "2 meshes".
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+std::string number(double value) {
+  return nb::cast<std::string>(nb::str(nb::float_(value)));
+}
+
+/// Throws unless the argument is a plain list of rows.
+void expect_list(const Rows& rows, const Shape& row) {
+  if (rows.shape().size() != 1) {
+    std::string expected = "(n";
+    for (const std::size_t size : row) expected += ", " + std::to_string(size);
+    expected += row.empty() ? ",)" : ")";
+    refuse(std::string(rows.name()) + ": got an array of shape " + to_string(rows.shape(), row) +
+           ", expected shape " + expected);
+  }
+}
+
+/// All rows of floats, each of them finite and not too large.
+template <class T>
+std::vector<T> read_floats(const char* name, nb::handle value, const Shape& row) {
+  Rows rows(name, value, row);
+  expect_list(rows, row);
+  const std::size_t width = count_of(row);
+  static_assert(sizeof(T) % sizeof(float) == 0);
+  if (sizeof(T) != width * sizeof(float)) throw std::logic_error("read_floats: a row is not a T");
+  std::vector<T> all(rows.count());
+  float* const floats = reinterpret_cast<float*>(all.data());
+  rows.read(0, rows.count(), floats, width);
+  for (std::size_t i = 0; i < all.size() * width; ++i)
+    if (!(std::abs(floats[i]) <= kLargest)) {
+      const std::string place =
+          row.empty() ? std::to_string(i) : std::to_string(i / width) + ", " + std::to_string(i % width);
+      refuse(std::string(name) + "[" + place + "] is " + number(floats[i]) +
+             ", expected a finite number up to 2^126");
+    }
+  return all;
+}
+
+void expect_length(const char* name, std::size_t got, const char* other, std::size_t expected) {
+  if (got != expected)
+    refuse(std::string(name) + ": got " + std::to_string(got) + ", expected " + std::to_string(expected) +
+           ", as many as " + other);
+}
+
+std::vector<std::array<std::uint32_t, 3>> read_triangles(nb::handle value, std::size_t vertices) {
+  Rows rows("triangles", value, {3}, Rows::Accept::integers);
+  expect_list(rows, {3});
+  std::vector<std::array<std::uint32_t, 3>> triangles(rows.count());
+  // A chunk at a time, so that no second copy of 64 bits is made.
+  constexpr std::size_t kChunk = 4096;
+  std::vector<std::int64_t> chunk(3 * std::min(kChunk, rows.count()));
+  for (std::size_t begin = 0; begin < rows.count(); begin += kChunk) {
+    const std::size_t count = std::min(kChunk, rows.count() - begin);
+    rows.read(begin, count, chunk.data(), 3);
+    for (std::size_t i = 0; i < 3 * count; ++i) {
+      if (chunk[i] < 0 || static_cast<std::size_t>(chunk[i]) >= vertices)
+        refuse("triangles[" + std::to_string(begin + i / 3) + ", " + std::to_string(i % 3) + "] is " +
+               std::to_string(chunk[i]) + ", expected " +
+               (vertices > 0 ? "0 to " + std::to_string(vertices - 1) : "none, since there are no vertices"));
+      triangles[begin + i / 3][i % 3] = static_cast<std::uint32_t>(chunk[i]);
+    }
+  }
+  return triangles;
+}
+
+Affine3 read_transform(const char* name, nb::handle value) {
+  if (value.is_none()) return Affine3::identity();
+  Rows rows(name, value, {4, 4});
+  if (!rows.shape().empty())
+    refuse(std::string(name) + ": got an array of shape " + to_string(rows.shape(), {4, 4}) +
+           ", expected shape (4, 4)");
+  float m[16];
+  rows.read(0, 1, m, 16);
+  if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+    refuse(std::string(name) + ": the last row is " + number(m[12]) + " " + number(m[13]) + " " +
+           number(m[14]) + " " + number(m[15]) + ", expected 0 0 0 1");
+  const Affine3 affine{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
+  try {
+    inverse(affine);
+  } catch (const std::invalid_argument&) {
+    refuse(std::string(name) +
+           ": cannot be inverted, expected a transform of finite numbers that keeps "
+           "three dimensions");
+  }
+  return affine;
+}
+
+/// Spheres and disks from columns.
+std::vector<Sphere> read_spheres(nb::handle centers, nb::handle radii) {
+  const auto c = read_floats<Vec3>("centers", centers, {3});
+  const auto r = read_floats<float>("radii", radii, {});
+  expect_length("radii", r.size(), "centers", c.size());
+  std::vector<Sphere> spheres(c.size());
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (r[i] < 0) refuse("radii[" + std::to_string(i) + "] is " + number(r[i]) + ", expected 0 or more");
+    spheres[i] = Sphere{c[i], r[i]};
+  }
+  return spheres;
+}
+
+std::vector<Disk> read_disks(nb::handle centers, nb::handle normals, nb::handle radii) {
+  const auto c = read_floats<Vec3>("centers", centers, {3});
+  const auto n = read_floats<Vec3>("normals", normals, {3});
+  const auto r = read_floats<float>("radii", radii, {});
+  expect_length("normals", n.size(), "centers", c.size());
+  expect_length("radii", r.size(), "centers", c.size());
+  std::vector<Disk> disks;
+  for (std::size_t i = 0; i < c.size(); ++i) disks.push_back(Disk{c[i], n[i], r[i]});
+  return disks;
+}
+
+std::vector<Quad> read_quads(nb::handle corners) {
+  struct Corners {
+    Vec3 p[4];
+  };
+  const auto c = read_floats<Corners>("corners", corners, {4, 3});
+  std::vector<Quad> quads;
+  for (const Corners& q : c) quads.push_back(Quad{q.p[0], q.p[1], q.p[2], q.p[3]});
+  return quads;
+}
+
+std::vector<Cuboid> read_cuboids(nb::handle lower, nb::handle upper) {
+  const auto a = read_floats<Vec3>("lower", lower, {3});
+  const auto b = read_floats<Vec3>("upper", upper, {3});
+  expect_length("upper", b.size(), "lower", a.size());
+  std::vector<Cuboid> cuboids;
+  for (std::size_t i = 0; i < a.size(); ++i) cuboids.push_back(Cuboid{a[i], b[i]});
+  return cuboids;
+}
+
+template <class T>
+nb::bytes bytes_of(const std::vector<T>& items) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return nb::bytes(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T));
+}
+
+template <class T>
+std::vector<T> items_of(nb::handle bytes) {
+  const nb::bytes data = nb::cast<nb::bytes>(bytes);
+  std::vector<T> items(data.size() / sizeof(T));
+  std::memcpy(static_cast<void*>(items.data()), data.c_str(), items.size() * sizeof(T));
+  return items;
+}
+
+template <class T>
+nb::bytes bytes_of_one(const T& item) {
+  return nb::bytes(reinterpret_cast<const char*>(&item), sizeof item);
+}
+
+std::size_t add_geometry(SceneDesc& desc, Shapes shapes, const std::string& name) {
+  return desc.add(Geometry{std::move(shapes), {}, {}, name}).value;
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(nb::handle vertices, nb::handle triangles, nb::handle normals, nb::handle uvs) {
+  TriangleMesh mesh;
+  mesh.positions = read_floats<Vec3>("vertices", vertices, {3});
+  mesh.indices = read_triangles(triangles, mesh.positions.size());
+  if (!normals.is_none()) {
+    mesh.normals = read_floats<Vec3>("normals", normals, {3});
+    expect_length("normals", mesh.normals.size(), "vertices", mesh.positions.size());
+  }
+  if (!uvs.is_none()) {
+    mesh.uvs = read_floats<Vec2>("uvs", uvs, {2});
+    expect_length("uvs", mesh.uvs.size(), "vertices", mesh.positions.size());
+  }
+  return mesh;
+}
+
+std::string summary(const SceneDesc& desc) {
+  constexpr const char* kOne[] = {"triangle", "sphere", "quad", "cuboid", "disk", "other shape"};
+  std::size_t lists[6] = {}, shapes[6] = {};
+  for (const Geometry& geometry : desc.geometries) {
+    ++lists[geometry.shapes.index()];
+    shapes[geometry.shapes.index()] += primitive_count(geometry);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (lists[i] == 0) continue;
+    text += text.empty() ? "" : ", ";
+    if (i == 0) text += counted(lists[0], "mesh", "meshes") + " of ";
+    text += counted(shapes[i], kOne[i], std::string(kOne[i]) + "s");
+  }
+  if (text.empty()) return "empty";
+  if (!desc.instances.empty()) text += ", " + counted(desc.instances.size(), "instance", "instances");
+  return text;
+}
+
+nb::object array_of(const Affine3& m) {
+  auto* const values = new double[16]{m.x.x, m.y.x, m.z.x, m.origin.x, m.x.y, m.y.y, m.z.y, m.origin.y,
+                                      m.x.z, m.y.z, m.z.z, m.origin.z, 0,     0,     0,     1};
+  nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, double, nb::shape<4, 4>>(values, {4, 4}, owner));
+}
+
+nb::tuple state_of(const SceneDesc& desc) {
+  nb::list geometries;
+  for (const Geometry& geometry : desc.geometries) {
+    nb::list columns;
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+      columns.append(bytes_of(mesh->positions));
+      columns.append(bytes_of(mesh->indices));
+      columns.append(bytes_of(mesh->normals));
+      columns.append(bytes_of(mesh->uvs));
+    } else if (const auto* spheres = std::get_if<std::vector<Sphere>>(&geometry.shapes)) {
+      columns.append(bytes_of(*spheres));
+    } else if (const auto* quads = std::get_if<std::vector<Quad>>(&geometry.shapes)) {
+      columns.append(bytes_of(*quads));
+    } else if (const auto* cuboids = std::get_if<std::vector<Cuboid>>(&geometry.shapes)) {
+      columns.append(bytes_of(*cuboids));
+    } else if (const auto* disks = std::get_if<std::vector<Disk>>(&geometry.shapes)) {
+      columns.append(bytes_of(*disks));
+    } else {
+      throw nb::type_error("a scene with shapes of a user's own kind cannot be pickled");
+    }
+    geometries.append(nb::make_tuple(geometry.name, geometry.shapes.index(), nb::tuple(columns)));
+  }
+  nb::object camera = desc.camera ? nb::object(bytes_of_one(*desc.camera)) : nb::none();
+  return nb::make_tuple(desc.name, nb::tuple(geometries), bytes_of(desc.instances), camera, desc.warnings);
+}
+
+SceneDesc desc_of(const nb::tuple& state) {
+  SceneDesc desc;
+  desc.name = nb::cast<std::string>(state[0]);
+  for (nb::handle entry : nb::cast<nb::tuple>(state[1])) {
+    const nb::tuple columns = nb::cast<nb::tuple>(entry[2]);
+    Shapes shapes;
+    switch (nb::cast<int>(entry[1])) {
+      case 0:
+        shapes = TriangleMesh{items_of<Vec3>(columns[0]), items_of<std::array<std::uint32_t, 3>>(columns[1]),
+                              items_of<Vec3>(columns[2]), items_of<Vec2>(columns[3])};
+        break;
+      case 1:
+        shapes = items_of<Sphere>(columns[0]);
+        break;
+      case 2:
+        shapes = items_of<Quad>(columns[0]);
+        break;
+      case 3:
+        shapes = items_of<Cuboid>(columns[0]);
+        break;
+      case 4:
+        shapes = items_of<Disk>(columns[0]);
+        break;
+      default:
+        refuse("this pickle is not from this version of boxwood");
+    }
+    add_geometry(desc, std::move(shapes), nb::cast<std::string>(entry[0]));
+  }
+  desc.instances = items_of<Instance>(state[2]);
+  if (!state[3].is_none()) desc.camera = items_of<Camera>(state[3]).at(0);
+  desc.warnings = nb::cast<std::vector<std::string>>(state[4]);
+  return desc;
+}
+
+nb::tuple state_of(const BuildOptions& o) {
+  return nb::make_tuple(static_cast<int>(o.method), o.max_depth, o.leaf_size, o.block_size, o.bins,
+                        o.traversal_cost, o.reinsertion_rounds, o.reinsertion_share, o.split_share);
+}
+
+BuildOptions options_of(const nb::tuple& state) {
+  BuildOptions o;
+  o.method = static_cast<Method>(nb::cast<int>(state[0]));
+  o.max_depth = nb::cast<int>(state[1]);
+  o.leaf_size = nb::cast<int>(state[2]);
+  o.block_size = nb::cast<int>(state[3]);
+  o.bins = nb::cast<int>(state[4]);
+  o.traversal_cost = nb::cast<float>(state[5]);
+  o.reinsertion_rounds = nb::cast<int>(state[6]);
+  o.reinsertion_share = nb::cast<float>(state[7]);
+  o.split_share = nb::cast<float>(state[8]);
+  return o;
+}
+
+void bind_description(nb::module_& module) {
+  using nb::arg;
+  using nb::sig;
+
+  nb::enum_<Method>(module, "Method", "How a tree is built.")
+      .value("longest_axis", Method::longest_axis, doc::longest_axis)
+      .value("binned_sah", Method::binned_sah, doc::binned_sah)
+      .value("sweep_sah", Method::sweep_sah, doc::sweep_sah)
+      .value("ploc", Method::ploc, doc::ploc);
+
+  nb::class_<BuildOptions>(module, "BuildOptions", doc::BuildOptions)
+      .def(nb::init<>())
+      .def_rw("method", &BuildOptions::method, "See Method.")
+      .def_rw("max_depth", &BuildOptions::max_depth, doc::BuildOptions_max_depth)
+      .def_rw("leaf_size", &BuildOptions::leaf_size, doc::BuildOptions_leaf_size)
+      .def_rw("bins", &BuildOptions::bins, doc::BuildOptions_bins)
+      .def_rw("traversal_cost", &BuildOptions::traversal_cost, doc::BuildOptions_traversal_cost)
+      .def_rw("reinsertion_rounds", &BuildOptions::reinsertion_rounds, doc::BuildOptions_reinsertion_rounds)
+      .def_rw("reinsertion_share", &BuildOptions::reinsertion_share, "The share of all nodes, 0 to 1.")
+      .def_rw("split_share", &BuildOptions::split_share, doc::BuildOptions_split_share)
+      .def_static("fast", &BuildOptions::fast, doc::BuildOptions_fast)
+      .def_static("balanced", &BuildOptions::balanced, doc::BuildOptions_balanced)
+      .def_static("best", &BuildOptions::best, doc::BuildOptions_best)
+      .def("__getstate__", [](const BuildOptions& o) { return state_of(o); })
+      .def("__setstate__", [](BuildOptions& o, nb::tuple state) { new (&o) BuildOptions(options_of(state)); })
+      .def("__repr__", [](const BuildOptions& o) {
+        constexpr const char* kNames[] = {"longest_axis", "binned_sah", "sweep_sah", "ploc"};
+        return std::string("<boxwood.BuildOptions: ") + kNames[static_cast<int>(o.method)] + ", leaves of " +
+               std::to_string(o.leaf_size) + ", " + counted(o.reinsertion_rounds, "round", "rounds") +
+               " of reinsertion, split_share " + number(o.split_share) + ">";
+      });
+
+  nb::class_<Camera>(module, "Camera", doc::Camera)
+      .def_prop_ro(
+          "world_from_camera", [](const Camera& c) { return array_of(c.world_from_camera); },
+          sig("def world_from_camera(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "(4, 4): takes camera coordinates to the world.")
+      .def_ro("fov_deg", &Camera::fov_deg, doc::Camera_fov_deg)
+      .def_ro("width", &Camera::width, doc::Camera_width)
+      .def_ro("height", &Camera::height, "As width.");
+
+  nb::class_<SceneDesc>(
+      module, "SceneDesc",
+      "What is in a scene: plain data that Scene builds its trees from. A geometry is defined once and "
+      "appears "
+      "wherever an\ninstance places it; without any instance, each appears once, where it was defined.")
+      .def(nb::init<>())
+      .def_rw("name", &SceneDesc::name)
+      .def_ro("warnings", &SceneDesc::warnings, doc::SceneDesc_warnings)
+      .def_prop_ro("geometry_count", [](const SceneDesc& d) { return d.geometries.size(); })
+      .def_prop_ro("instance_count", [](const SceneDesc& d) { return d.instances.size(); })
+      .def(
+          "add_mesh",
+          [](SceneDesc& desc, nb::handle vertices, nb::handle triangles, nb::handle normals, nb::handle uvs,
+             const std::string& name) {
+            return add_geometry(desc, read_mesh(vertices, triangles, normals, uvs), name);
+          },
+          arg("vertices"), arg("triangles"), nb::kw_only(), arg("normals") = nb::none(),
+          arg("uvs") = nb::none(), arg("name") = "",
+          sig("def add_mesh(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, *, "
+              "normals: numpy.typing.ArrayLike | None = None, uvs: numpy.typing.ArrayLike | None = None, "
+              "name: str = '') -> int"),
+          "Triangles that share vertices: (n, 3) numbers and (m, 3) indices, perhaps with shading normals "
+          "(n, 3) "
+          "and texture\ncoordinates (n, 2). Returns the geometry's id. Raises ValueError and TypeError that "
+          "name "
+          "the argument and the place.")
+      .def(
+          "add_spheres",
+          [](SceneDesc& desc, nb::handle centers, nb::handle radii, const std::string& name) {
+            return add_geometry(desc, read_spheres(centers, radii), name);
+          },
+          arg("centers"), arg("radii"), nb::kw_only(), arg("name") = "",
+          sig("def add_spheres(self, centers: numpy.typing.ArrayLike, radii: numpy.typing.ArrayLike, *, "
+              "name: "
+              "str = '') -> int"),
+          "Spheres: centers (n, 3), radii (n,). Returns the geometry's id.")
+      .def(
+          "add_quads",
+          [](SceneDesc& desc, nb::handle corners, const std::string& name) {
+            return add_geometry(desc, read_quads(corners), name);
+          },
+          arg("corners"), nb::kw_only(), arg("name") = "",
+          sig("def add_quads(self, corners: numpy.typing.ArrayLike, *, name: str = '') -> int"),
+          "Quadrilaterals: corners (n, 4, 3), in order around each. Returns the geometry's id.")
+      .def(
+          "add_cuboids",
+          [](SceneDesc& desc, nb::handle lower, nb::handle upper, const std::string& name) {
+            return add_geometry(desc, read_cuboids(lower, upper), name);
+          },
+          arg("lower"), arg("upper"), nb::kw_only(), arg("name") = "",
+          sig("def add_cuboids(self, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, *, name: "
+              "str = "
+              "'') -> int"),
+          "Boxes along the axes: their corners (n, 3). Returns the geometry's id.")
+      .def(
+          "add_disks",
+          [](SceneDesc& desc, nb::handle centers, nb::handle normals, nb::handle radii,
+             const std::string& name) {
+            return add_geometry(desc, read_disks(centers, normals, radii), name);
+          },
+          arg("centers"), arg("normals"), arg("radii"), nb::kw_only(), arg("name") = "",
+          sig("def add_disks(self, centers: numpy.typing.ArrayLike, normals: numpy.typing.ArrayLike, radii: "
+              "numpy.typing.ArrayLike, *, name: str = '') -> int"),
+          "Disks: centers (n, 3), normals (n, 3) of any length, radii (n,). Returns the geometry's id.")
+      .def(
+          "add_instance",
+          [](SceneDesc& desc, std::size_t geometry, nb::handle world_from_object) {
+            if (geometry >= desc.geometries.size())
+              refuse("geometry: got " + std::to_string(geometry) + ", expected the id of one of " +
+                     std::to_string(desc.geometries.size()) + " geometries");
+            return desc
+                .add(Instance{
+                    GeometryId(geometry), read_transform("world_from_object", world_from_object), {}})
+                .value;
+          },
+          arg("geometry"), arg("world_from_object") = nb::none(),
+          sig("def add_instance(self, geometry: int, world_from_object: numpy.typing.ArrayLike | None = "
+              "None) -> "
+              "int"),
+          "Places a geometry, by a (4, 4) transform: world = m @ (x, y, z, 1); None leaves it where it was "
+          "defined.\nReturns the instance's id.")
+      .def("__getstate__", [](const SceneDesc& d) { return state_of(d); })
+      .def("__setstate__", [](SceneDesc& d, nb::tuple state) { new (&d) SceneDesc(desc_of(state)); })
+      .def("__repr__", [](const SceneDesc& d) { return "<boxwood.SceneDesc: " + summary(d) + ">"; });
+}
+
+}  // namespace boxwood::python

@@ -1,0 +1,99 @@
+#include "running.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "boxwood/core/error.h"
+
+namespace boxwood::python {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+constexpr std::chrono::milliseconds kPatience{20};
+
+}  // namespace
+
+Executor& executor_of(int threads) {
+  if (threads == 0) return default_executor();
+  if (threads == 1) return serial_executor();
+  if (threads < 0 || threads > kMaxThreads)
+    throw std::invalid_argument("threads: got " + std::to_string(threads) + ", expected 0 (all) to " +
+                                std::to_string(kMaxThreads));
+  // Never taken down: at the end of the process others may still be working.
+  static std::mutex mutex;
+  static auto& executors = *new std::map<int, std::unique_ptr<Executor>>;
+  std::lock_guard lock(mutex);
+  std::unique_ptr<Executor>& executor = executors[threads];
+  if (!executor) executor = make_executor(threads);
+  return *executor;
+}
+
+bool Signals::keep_going() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < kPatience) return true;
+  last_ = now;
+  nb::gil_scoped_acquire gil;
+  return PyErr_CheckSignals() == 0;
+}
+
+void run_stream(std::size_t count, int threads, const std::function<void(const Stream&)>& work) {
+  Signals signals;
+  Stream stream{count, &executor_of(threads), [&signals] { return signals.keep_going(); }};
+  try {
+    nb::gil_scoped_release no_gil;
+    work(stream);
+  } catch (const Cancelled&) {
+    nb::raise_python_error();
+  }
+}
+
+void run_interruptibly(bool is_long, const std::function<void(const Progress&)>& work) {
+  if (!is_long) {
+    nb::gil_scoped_release no_gil;
+    work({});
+    return;
+  }
+
+  std::atomic<bool> is_stopped = false;
+  std::mutex mutex;
+  std::condition_variable end;
+  bool is_done = false;
+  std::exception_ptr error;
+  bool was_interrupted = false;
+  {
+    nb::gil_scoped_release no_gil;
+    std::thread worker([&] {
+      try {
+        work([&](std::string_view, double) { return !is_stopped; });
+      } catch (...) {
+        error = std::current_exception();
+      }
+      std::lock_guard lock(mutex);
+      is_done = true;
+      end.notify_one();
+    });
+    std::unique_lock lock(mutex);
+    while (!end.wait_for(lock, kPatience, [&] { return is_done; })) {
+      if (was_interrupted) continue;
+      lock.unlock();
+      {
+        nb::gil_scoped_acquire gil;
+        was_interrupted = PyErr_CheckSignals() != 0;
+      }
+      is_stopped = was_interrupted;
+      lock.lock();
+    }
+    lock.unlock();
+    worker.join();
+  }
+  if (was_interrupted) nb::raise_python_error();
+  if (error) std::rethrow_exception(error);
+}
+
+}  // namespace boxwood::python

@@ -1,0 +1,225 @@
+#include "scene_type.h"
+
+#include <filesystem>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "boxwood/gallery/gallery.h"
+#include "boxwood/io/load.h"
+#include "boxwood/scene/parts.h"
+#include "docstrings.h"
+#include "rows.h"
+#include "running.h"
+
+namespace boxwood::python {
+namespace {
+
+constexpr std::size_t kLongBuild = 20'000;  // primitives: some ten milliseconds
+
+/// Materials say how things look, which no query asks.
+void drop_materials(SceneDesc& desc) {
+  for (Geometry& geometry : desc.geometries) {
+    geometry.material = {};
+    geometry.materials = {};
+  }
+  for (Instance& instance : desc.instances) instance.material = {};
+  desc.materials = {};
+  desc.textures = {};
+  desc.point_lights = {};
+  desc.distant_lights = {};
+  desc.sky.reset();
+}
+
+SceneDesc read_desc(const std::filesystem::path& path, int threads) {
+  const std::string name = path.string();
+  SceneDesc desc;
+  if (gallery::is_known(name.substr(0, name.find(':')))) {
+    desc = gallery::make(name);
+  } else {
+    std::error_code hidden;
+    if (!std::filesystem::exists(path, hidden) && !hidden) {
+      PyErr_SetObject(
+          PyExc_FileNotFoundError,
+          nb::make_tuple(ENOENT, "there is no such file, and no made scene of that name", name).ptr());
+      nb::raise_python_error();
+    }
+    Executor& executor = executor_of(threads);
+    run_interruptibly(true, [&](const Progress&) { desc = io::load(path, &executor); });
+  }
+  drop_materials(desc);
+  return desc;
+}
+
+BuildOptions or_default(const std::optional<BuildOptions>& options) {
+  return options ? *options : BuildOptions::balanced();
+}
+
+/// A read-only array over memory that `owner` keeps.
+template <class T>
+nb::object view_of(const T* data, std::initializer_list<std::size_t> shape, nb::handle owner) {
+  return nb::cast(nb::ndarray<nb::numpy, const T>(data, shape.size(), shape.begin(), owner));
+}
+
+const Geometry& geometry_of(const SceneDesc& desc, std::size_t id) {
+  if (id >= desc.geometries.size())
+    throw nb::index_error(("geometry_id: got " + std::to_string(id) + ", and there are " +
+                           std::to_string(desc.geometries.size()))
+                              .c_str());
+  return desc.geometries[id];
+}
+
+}  // namespace
+
+SceneObject build_scene(SceneDesc desc, BuildOptions options, int threads) {
+  options.executor = &executor_of(threads);
+  std::optional<Scene> scene;
+  const bool is_long = defined_primitive_count(desc) > kLongBuild;
+  run_interruptibly(is_long, [&](const Progress& progress) {
+    BuildOptions watched = options;
+    watched.progress = progress;
+    scene.emplace(std::move(desc), watched);
+  });
+  options.executor = nullptr;
+  return {std::move(*scene), options};
+}
+
+void bind_scene(nb::module_& module) {
+  using nb::arg;
+  using nb::sig;
+
+  nb::class_<SceneObject> scene(module, "Scene",
+                                "Geometry with its trees: built once, read-only from then on; any number of "
+                                "threads may ask. Questions take arrays of\nany float or integer type, any "
+                                "strides and any leading shape, and answer in that shape.");
+  scene
+      .def(
+          "__init__",
+          [](SceneObject* self, const SceneDesc& desc, const std::optional<BuildOptions>& options,
+             int threads) { new (self) SceneObject(build_scene(desc, or_default(options), threads)); },
+          arg("desc"), arg("options") = nb::none(), nb::kw_only(), arg("threads") = 0,
+          (std::string(doc::Scene_Scene) + "\nCtrl-C ends a long build. threads = 0 means all.").c_str())
+      .def_static(
+          "from_mesh",
+          [](nb::handle vertices, nb::handle triangles, nb::handle normals,
+             const std::optional<BuildOptions>& options, int threads) {
+            SceneDesc desc;
+            desc.add(read_mesh(vertices, triangles, normals, nb::none()));
+            return build_scene(std::move(desc), or_default(options), threads);
+          },
+          arg("vertices"), arg("triangles"), nb::kw_only(), arg("normals") = nb::none(),
+          arg("options") = nb::none(), arg("threads") = 0,
+          sig("def from_mesh(vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, *, "
+              "normals: "
+              "numpy.typing.ArrayLike | None = None, options: BuildOptions | None = None, threads: int = 0) "
+              "-> "
+              "Scene"),
+          "A scene of one mesh: (n, 3) vertices, (m, 3) indices, perhaps shading normals (n, 3).\nRaises "
+          "ValueError and TypeError that name the argument and the place. Ctrl-C ends a long build.")
+      .def(
+          "stats",
+          [](const SceneObject& s) {
+            const SceneStatistics statistics = s.scene.statistics();
+            nb::dict figures;
+            figures["primitives"] = statistics.primitives;
+            figures["trees"] = statistics.trees;
+            figures["nodes"] = statistics.nodes;
+            figures["tree_bytes"] = statistics.tree_bytes;
+            figures["geometry_bytes"] = statistics.geometry_bytes;
+            figures["build_ms"] = statistics.build_ms;
+            return figures;
+          },
+          sig("def stats(self) -> dict[str, float]"), doc::SceneStatistics)
+      .def_prop_ro(
+          "bounds",
+          [](const SceneObject& s) {
+            const Box3 box = s.scene.bounds();
+            auto* const corners =
+                new float[6]{box.lower.x, box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z};
+            nb::capsule owner(corners, [](void* p) noexcept { delete[] static_cast<float*>(p); });
+            return nb::cast(nb::ndarray<nb::numpy, float, nb::shape<2, 3>>(corners, {2, 3}, owner));
+          },
+          sig("def bounds(self) -> numpy.typing.NDArray[numpy.float32]"),
+          "(2, 3): the lower and the upper corner; of an empty scene inf and -inf.")
+      .def_prop_ro("geometry_count",
+                   [](const SceneObject& s) { return s.scene.description().geometries.size(); })
+      .def_prop_ro("instance_count", [](const SceneObject& s) { return s.scene.parts().instances.size(); })
+      .def_prop_ro(
+          "name", [](const SceneObject& s) { return s.scene.description().name; }, "From the file, or empty.")
+      .def_prop_ro(
+          "warnings", [](const SceneObject& s) { return s.scene.description().warnings; },
+          doc::SceneDesc_warnings)
+      .def_prop_ro(
+          "camera", [](const SceneObject& s) { return s.scene.description().camera; },
+          "From the file; None when it has none.")
+      .def_prop_ro(
+          "options", [](const SceneObject& s) { return s.options; }, "How it was built.")
+      .def(
+          "mesh",
+          [](nb::handle_t<SceneObject> self, std::size_t geometry_id) {
+            const SceneDesc& desc = nb::cast<SceneObject&>(self).scene.description();
+            const auto* mesh = std::get_if<TriangleMesh>(&geometry_of(desc, geometry_id).shapes);
+            if (!mesh)
+              throw nb::type_error(("geometry " + std::to_string(geometry_id) + " is not a mesh").c_str());
+            return nb::make_tuple(view_of(reinterpret_cast<const float*>(mesh->positions.data()),
+                                          {mesh->positions.size(), 3}, self),
+                                  view_of(reinterpret_cast<const std::uint32_t*>(mesh->indices.data()),
+                                          {mesh->indices.size(), 3}, self));
+          },
+          arg("geometry_id") = 0,
+          sig("def mesh(self, geometry_id: int = 0) -> tuple[numpy.typing.NDArray[numpy.float32], "
+              "numpy.typing.NDArray[numpy.uint32]]"),
+          "The vertices (n, 3) and triangles (m, 3) of a mesh where it was defined; read-only, not copied.")
+      .def(
+          "instance",
+          [](const SceneObject& s, std::size_t instance_id) {
+            const auto& instances = s.scene.parts().instances;
+            if (instance_id >= instances.size())
+              throw nb::index_error(("instance_id: got " + std::to_string(instance_id) + ", and there are " +
+                                     std::to_string(instances.size()))
+                                        .c_str());
+            return nb::make_tuple(instances[instance_id].geometry.value,
+                                  array_of(instances[instance_id].world_from_object));
+          },
+          arg("instance_id"),
+          sig("def instance(self, instance_id: int) -> tuple[int, numpy.typing.NDArray[numpy.float64]]"),
+          "The geometry_id of an instance, and its (4, 4) transform.")
+      .def("__getstate__",
+           [](const SceneObject& s) {
+             return nb::make_tuple(state_of(s.scene.description()), state_of(s.options));
+           })
+      .def("__setstate__",
+           [](SceneObject& s, nb::tuple state) {
+             new (&s) SceneObject(build_scene(desc_of(nb::cast<nb::tuple>(state[0])),
+                                              options_of(nb::cast<nb::tuple>(state[1])), 0));
+           })
+      .def("__repr__", [](const SceneObject& s) {
+        const SceneDesc& desc = s.scene.description();
+        return "<boxwood.Scene" + (desc.name.empty() ? "" : " '" + desc.name + "'") + ": " + summary(desc) +
+               ">";
+      });
+  bind_queries(scene);
+
+  module.def(
+      "load",
+      [](const std::filesystem::path& path, const std::optional<BuildOptions>& options, int threads) {
+        return build_scene(read_desc(path, threads), or_default(options), threads);
+      },
+      arg("path"), arg("options") = nb::none(), nb::kw_only(), arg("threads") = 0,
+      sig("def load(path: str | os.PathLike[str], options: BuildOptions | None = None, *, threads: int = 0) "
+          "-> "
+          "Scene"),
+      "Reads a scene file (.obj .ply .stl .gltf .glb .pbrt) and builds it; or makes a scene of the gallery, "
+      "such "
+      "as \"stilllife\" or\n\"terrain:512\". Materials, textures and lights, which no query needs, are left "
+      "out. "
+      "Raises FileNotFoundError, FileError.");
+  module.def("load_description", &read_desc, arg("path"), nb::kw_only(), arg("threads") = 0,
+             sig("def load_description(path: str | os.PathLike[str], *, threads: int = 0) -> SceneDesc"),
+             "As load, but does not build: more may be added.");
+}
+
+}  // namespace boxwood::python

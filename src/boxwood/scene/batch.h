@@ -1,0 +1,35 @@
+// batch.h: how is one chunk of a batch answered, on one thread, and how long is a chunk?
+//
+// Batches in memory (scene.h) and streams (stream.h) are cut alike. Inside the scene room only.
+#pragma once
+
+#include <algorithm>
+
+#include "boxwood/scene/scene.h"
+
+namespace boxwood::detail {
+
+constexpr std::size_t kMaxChunk = 4096, kMinChunk = 512;
+
+/// Chunks begin at multiples of this, so that none cuts a tile of a picture, whose rays go the same way.
+constexpr std::size_t kWhole = 64;
+
+/// Calls body(begin, end) for chunks of `count` rays: some for each thread, so that all end together.
+template <class Body>
+void for_chunks(Executor* given, std::size_t count, const Body& body) {
+  if (count <= kMinChunk) {
+    if (count > 0) body(std::size_t(0), count);
+    return;
+  }
+  Executor& executor = given ? *given : default_executor();
+  const std::size_t share = count / (8 * static_cast<std::size_t>(executor.concurrency()));
+  const std::size_t chunk = std::clamp(share, kMinChunk, kMaxChunk) / kWhole * kWhole;
+  parallel_for(executor, 0, (count + chunk - 1) / chunk, 1,
+               [&](std::size_t i) { body(i * chunk, std::min((i + 1) * chunk, count)); });
+}
+
+/// hits[i] answers rays[i]. Precondition: at most kMaxChunk rays.
+void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* hits);
+void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits);
+
+}  // namespace boxwood::detail
