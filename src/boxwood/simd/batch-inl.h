@@ -16,10 +16,22 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-/// Calls output(i, hit) for each ordinary ray, in no order; `unusual` gets the indices of the others.
-template <bool kAny, class Output>
-void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
-                 const Output& output, std::vector<std::uint32_t>& unusual) {
+/// What a batch answers of a ray.
+inline void write_answer(const TriangleHit& hit, TriangleHit& answer) {
+  answer = hit;
+  if (!hit.is_hit()) answer.t = kInfinity;
+}
+inline void write_answer(const TriangleHit& hit, bool& answer) {
+  answer = hit.is_hit();
+}
+
+/// hits[i] answers rays[i], where the ray is ordinary; `unusual` gets the indices of the others. Answer is
+/// bool for any hit, TriangleHit for the closest.
+template <class Answer>
+void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, Answer* hits,
+                 std::vector<std::uint32_t>& unusual) {
+  constexpr bool kAny = std::is_same_v<Answer, bool>;
+  const auto output = [&](std::uint32_t i, const TriangleHit& hit) { write_answer(hit, hits[i]); };
   const char* pool = tree.pool();
   constexpr std::size_t kAtOnce = 4096;
   HWY_ALIGN std::uint32_t order[kAtOnce];
@@ -32,8 +44,7 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
       Bundle<kAny> bundle;
       if (group == kBundle && may_be_bundle(&rays[i]) && bundle.prepare(&rays[i], bounds)) {
         bundle.trace(pool);
-        bundle.finish(
-            [&](std::uint32_t k, const TriangleHit& hit) { output(static_cast<std::uint32_t>(i) + k, hit); });
+        bundle.store(&hits[i]);
       } else {
         for (std::size_t k = 0; k < group; ++k) order[count++] = static_cast<std::uint32_t>(i + k);
       }
@@ -44,7 +55,7 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
     const std::span<const std::uint32_t> rest(order, count);
     if (tree.max_stack() + kWidth <= kShortStack) {
       static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
-      Interleaved<kAny, Output>(pool, bounds, rays.data(), rest, output, unusual).run(flight.get());
+      Interleaved<kAny, decltype(output)>(pool, bounds, rays.data(), rest, output, unusual).run(flight.get());
       continue;
     }
     for (const std::uint32_t i : rest) {

@@ -43,23 +43,19 @@ class Bundle {
   /// Takes kBundle rays; false when they do not go the same way, or are not all ordinary.
   HWY_INLINE bool prepare(const Ray* rays, const Box3& bounds) {
     const DB d;
-    const VIB stride = hn::Mul(hn::Iota(DIB(), 0), hn::Set(DIB(), 8));
-    const float* first = &rays->origin.x;
-    const auto field = [&](int i) { return hn::GatherIndex(d, first + i, stride); };
+    VB dir[3], t_min, t_max;
+    load(rays, origin_, t_min, dir, t_max);
 
     // As in prepare() for one ray (ray-inl.h), a lane for each ray.
-    VB dir[3], abs_dir[3], reach = hn::Zero(d);
+    VB abs_dir[3], reach = hn::Zero(d);
     auto ordinary = hn::Eq(reach, reach);
     for (int k = 0; k < 3; ++k) {
-      origin_[k] = field(k);
-      dir[k] = field(4 + k);
       abs_dir[k] = hn::Abs(dir[k]);
       const VB to_corner = hn::Max(hn::Abs(hn::Sub(hn::Set(d, bounds.lower[k]), origin_[k])),
                                    hn::Abs(hn::Sub(hn::Set(d, bounds.upper[k]), origin_[k])));
       ordinary = hn::And(ordinary, hn::Le(hn::Add(abs_dir[k], to_corner), hn::Set(d, kLargestReach)));
       reach = hn::Max(reach, to_corner);
     }
-    const VB t_min = field(3), t_max = field(7);
     const VB d_max = hn::Max(abs_dir[0], hn::Max(abs_dir[1], abs_dir[2]));
     t_min_ = hn::Add(hn::IfThenElse(hn::Lt(t_min, hn::Zero(d)), hn::Zero(d), t_min), hn::Zero(d));
     ordinary =
@@ -84,29 +80,36 @@ class Bundle {
       axis_[k] = kAxes[z][k];
     }
 
-    // The slabs, and the shear.
+    // Whether they stay together: one after the other in a picture, not scattered by a surface.
+    const auto is_near_first = [&](VB v, VB distance) {
+      const VB first = hn::Set(d, hn::GetLane(v));
+      return hn::Le(hn::Abs(hn::Sub(v, first)), distance);
+    };
+    const VB scale = hn::Div(hn::Set(d, 1.0f), dir[z]);
+    const VB turn = hn::Set(d, 0.05f), step = hn::Mul(reach, hn::Set(d, 0x1p-9f));
+    shear_[2] = scale;
+    shear_[0] = hn::Mul(dir[axis_[0]], scale);
+    shear_[1] = hn::Mul(dir[axis_[1]], scale);
+    auto together = hn::And(is_near_first(shear_[0], turn), is_near_first(shear_[1], turn));
+    for (int k = 0; k < 3; ++k) together = hn::And(together, is_near_first(origin_[k], step));
+    if (!hn::AllTrue(d, together)) return false;
+
+    // The slabs.
     constexpr float u = 0x1p-24f;
     const VB least = hn::Mul(d_max, hn::Set(d, 0x1p-30f)), tiny = hn::Set(d, 0x1p-140f);
     for (int k = 0; k < 3; ++k) {
       const VB r = hn::Div(hn::Set(d, 1.0f), hn::CopySign(hn::Max(abs_dir[k], least), dir[k]));
       const VB error =
           hn::Add(hn::Mul(hn::Set(d, 12 * u), reach), hn::Mul(hn::Set(d, 8 * u), hn::Abs(origin_[k])));
-      slack_[k] = hn::Add(hn::Mul(hn::Abs(r), hn::Add(error, tiny)), tiny);
-      shift_[k] = hn::Neg(hn::Mul(origin_[k], r));
+      const VB slack = hn::Add(hn::Mul(hn::Abs(r), hn::Add(error, tiny)), tiny);
+      const VB box_slack = hn::Add(hn::Mul(slack, hn::Set(d, 1.5f)), hn::Set(d, 0x1p-120f));
+      const VB shift = hn::Neg(hn::Mul(origin_[k], r));
       inverse_[k] = r;
-    }
-    shear_[2] = inverse_[z];
-    shear_[0] = hn::Mul(dir[axis_[0]], shear_[2]);
-    shear_[1] = hn::Mul(dir[axis_[1]], shear_[2]);
-
-    // Whether they stay together: one after the other in a picture, not scattered by a surface.
-    constexpr float kSpread = 0.1f;
-    if (Range(shear_[0]).size() > kSpread || Range(shear_[1]).size() > kSpread) return false;
-    const float far_away = hn::GetLane(reach);
-    for (int k = 0; k < 3; ++k) {
-      const Range origins(origin_[k]), inverses(inverse_[k]);
-      if (origins.size() > far_away * 0x1p-8f) return false;
-      set_interval(k, origins, inverses, hn::GetLane(hn::MaxOfLanes(d, slack_[k])));
+      near_shift_[k] = hn::Sub(shift, box_slack);
+      far_shift_[k] = hn::Add(shift, box_slack);
+      gate_near_shift_[k] = hn::Sub(shift, slack);
+      gate_far_shift_[k] = hn::Add(shift, slack);
+      set_interval(k, Range(origin_[k]), Range(r), hn::GetLane(hn::MaxOfLanes(d, slack)));
     }
     limit_ = hn::Add(t_max, hn::Zero(d));
     first_t_ = hn::GetLane(hn::MinOfLanes(d, t_min_));
@@ -135,30 +138,43 @@ class Bundle {
         continue;
       }
       const TriangleBlock* block = block_at(pool, ref);
-      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block)
-        for (int lane = 0; lane < kBlockWidth; ++lane) {
-          if (lane > 0 && block->key[lane] == block->key[0]) break;
-          test_triangle(*block, lane, pool, active);
-        }
+      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) test_block(*block, pool, active);
       last_t_ = hn::GetLane(hn::MaxOfLanes(DB(), limit_));
       if (kAny && last_t_ < 0) return;
     }
   }
 
-  /// Calls output(i, hit) for each ray; hit.t is t_max, or the crossing's.
-  template <class Output>
-  HWY_INLINE void finish(const Output& output) const {
-    HWY_ALIGN float t[kBundle];
-    HWY_ALIGN std::uint32_t key[kBundle], block[kBundle], lane[kBundle];
-    const hn::RebindToUnsigned<DIB> du;
-    hn::Store(limit_, DB(), t);
-    hn::Store(hn::BitCast(du, hn::Xor(key_, hn::Set(DIB(), kTurned))), du, key);
-    hn::Store(hn::BitCast(du, block_), du, block);
-    hn::Store(hn::BitCast(du, lane_), du, lane);
-    for (std::uint32_t i = 0; i < kBundle; ++i) output(i, TriangleHit{t[i], key[i], block[i], lane[i]});
+  /// Writes what was found; the t of a miss is +inf.
+  HWY_INLINE void store(TriangleHit* hits) const {
+    const DB d;
+    const auto is_hit = hn::RebindMask(d, hn::Ne(block_, hn::Set(DIB(), -1)));
+    hn::StoreInterleaved4(hn::IfThenElse(is_hit, limit_, hn::Set(d, kInfinity)),
+                          hn::BitCast(d, hn::Xor(key_, hn::Set(DIB(), kTurned))), hn::BitCast(d, block_),
+                          hn::BitCast(d, lane_), d, &hits->t);
+  }
+  HWY_INLINE void store(bool* is_hit) const {
+    HWY_ALIGN std::int32_t block[kBundle];
+    hn::Store(block_, DIB(), block);
+    for (int i = 0; i < kBundle; ++i) is_hit[i] = block[i] != -1;
   }
 
  private:
+  /// A lane for each ray from the eight floats of each.
+  static HWY_INLINE void load(const Ray* rays, VB (&origin)[3], VB& t_min, VB (&dir)[3], VB& t_max) {
+    // Half of the rays at a time: lanes are an origin's and a direction's in turn.
+    const DB d;
+    const float* first = &rays->origin.x;
+    VB lower[4], upper[4];
+    hn::LoadInterleaved4(d, first, lower[0], lower[1], lower[2], lower[3]);
+    hn::LoadInterleaved4(d, first + 4 * kBundle, upper[0], upper[1], upper[2], upper[3]);
+    for (int k = 0; k < 3; ++k) {
+      origin[k] = hn::ConcatEven(d, upper[k], lower[k]);
+      dir[k] = hn::ConcatOdd(d, upper[k], lower[k]);
+    }
+    t_min = hn::ConcatEven(d, upper[3], lower[3]);
+    t_max = hn::ConcatOdd(d, upper[3], lower[3]);
+  }
+
   /// Keys are compared as signed numbers, with the highest bit turned round: so no key is the largest.
   static constexpr std::int32_t kTurned = std::numeric_limits<std::int32_t>::min();
   static constexpr std::int32_t kNoKey = std::numeric_limits<std::int32_t>::max();
@@ -213,42 +229,91 @@ class Bundle {
     for (int k = 0; k < 3; ++k) {
       const VB near = hn::Set(d, reinterpret_cast<const float*>(node + near_row_[k])[child]);
       const VB far = hn::Set(d, reinterpret_cast<const float*>(node + far_row_[k])[child]);
-      const VB box_slack = hn::Add(hn::Mul(slack_[k], hn::Set(d, 1.5f)), hn::Set(d, 0x1p-120f));
-      entry = hn::Max(entry, hn::BitCast(di, hn::MulAdd(near, inverse_[k], hn::Sub(shift_[k], box_slack))));
-      exit = hn::Min(exit, hn::BitCast(di, hn::MulAdd(far, inverse_[k], hn::Add(shift_[k], box_slack))));
+      entry = hn::Max(entry, hn::BitCast(di, hn::MulAdd(near, inverse_[k], near_shift_[k])));
+      exit = hn::Min(exit, hn::BitCast(di, hn::MulAdd(far, inverse_[k], far_shift_[k])));
     }
     return hn::Le(hn::BitCast(d, entry), hn::BitCast(d, exit));
   }
 
-  /// Takes the crossings of one triangle by the rays of `active`.
-  HWY_INLINE void test_triangle(const TriangleBlock& block, int lane, const char* pool, MB active) {
-    const DB d;
-    const DIB di;
-    const int kx = axis_[0], ky = axis_[1], kz = axis_[2];
-    const auto vertex = [&](int v, int axis) { return hn::Set(d, block.v[v][axis][lane]); };
-    const VB ox = origin_[kx], oy = origin_[ky], oz = origin_[kz];
+  /// Takes the crossings of the block's triangles by the rays of `active`.
+  HWY_INLINE void test_block(const TriangleBlock& block, const char* pool, MB active) {
+    // The edges of all four before the first branch: most triangles are missed by all rays, and which are not
+    // is hard to foresee.
+    VB products[kBlockWidth];
+    std::uint32_t crossed = 0;
+    for (int lane = 0; lane < kBlockWidth; ++lane) {
+      products[lane] = test_edges(block, lane);
+      const MB maybe = hn::AndNot(hn::Lt(products[lane], hn::Zero(DB())), active);
+      crossed |= static_cast<std::uint32_t>(!hn::AllFalse(DB(), maybe)) << lane;
+    }
+    if (crossed == 0) return;
+    const Faces faces(block, axis_);
+    for (; crossed; crossed &= crossed - 1) {
+      const int lane = __builtin_ctz(crossed);
+      test_plane(block, faces, lane, products[lane], pool, active);
+    }
+  }
 
-    // The signs of the edge functions: test_edges().
-    const VB tax = hn::Sub(ox, vertex(0, kx)), tay = hn::Sub(oy, vertex(0, ky)),
-             taz = hn::Sub(oz, vertex(0, kz));
-    const VB tbz = hn::Sub(oz, vertex(1, kz)), tcz = hn::Sub(oz, vertex(2, kz));
-    const VB ax = hn::Sub(tax, hn::Mul(shear_[0], taz)), ay = hn::Sub(tay, hn::Mul(shear_[1], taz));
-    const VB bx = hn::Sub(hn::Sub(ox, vertex(1, kx)), hn::Mul(shear_[0], tbz));
-    const VB by = hn::Sub(hn::Sub(oy, vertex(1, ky)), hn::Mul(shear_[1], tbz));
-    const VB cx = hn::Sub(hn::Sub(ox, vertex(2, kx)), hn::Mul(shear_[0], tcz));
-    const VB cy = hn::Sub(hn::Sub(oy, vertex(2, ky)), hn::Mul(shear_[1], tcz));
+  /// test_edges() of one triangle for all rays: below 0 it is missed, above 0 crossed.
+  HWY_INLINE VB test_edges(const TriangleBlock& block, int lane) const {
+    const DB d;
+    const int kx = axis_[0], ky = axis_[1], kz = axis_[2];
+    const auto from_vertex = [&](int v, int axis) {
+      return hn::Sub(origin_[axis], hn::Set(d, block.v[v][axis][lane]));
+    };
+    const VB az = from_vertex(0, kz), bz = from_vertex(1, kz), cz = from_vertex(2, kz);
+    const VB ax = hn::Sub(from_vertex(0, kx), hn::Mul(shear_[0], az));
+    const VB ay = hn::Sub(from_vertex(0, ky), hn::Mul(shear_[1], az));
+    const VB bx = hn::Sub(from_vertex(1, kx), hn::Mul(shear_[0], bz));
+    const VB by = hn::Sub(from_vertex(1, ky), hn::Mul(shear_[1], bz));
+    const VB cx = hn::Sub(from_vertex(2, kx), hn::Mul(shear_[0], cz));
+    const VB cy = hn::Sub(from_vertex(2, ky), hn::Mul(shear_[1], cz));
     const VB wa = hn::Sub(hn::Mul(bx, cy), hn::Mul(by, cx));
     const VB wb = hn::Sub(hn::Mul(cx, ay), hn::Mul(cy, ax));
     const VB wc = hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx));
-    const VB product = hn::Mul(hn::Min(wa, hn::Min(wb, wc)), hn::Max(wa, hn::Max(wb, wc)));
-    const auto maybe = hn::AndNot(hn::Lt(product, hn::Zero(d)), active);
-    if (hn::AllFalse(d, maybe)) return;
+    return hn::Mul(hn::Min(wa, hn::Min(wb, wc)), hn::Max(wa, hn::Max(wb, wc)));
+  }
 
-    // Where the lines meet the plane: test_planes().
-    const Triangle triangle = block.triangle(static_cast<std::uint32_t>(lane));
-    const Vec3 n = cross(triangle.b - triangle.a, triangle.c - triangle.a);
-    const VB nx = hn::Set(d, n[kx]), ny = hn::Set(d, n[ky]), nz = hn::Set(d, n[kz]);
-    const VB height = hn::Add(hn::Add(hn::Mul(nx, tax), hn::Mul(ny, tay)), hn::Mul(nz, taz));
+  /// What the planes of a block's triangles need and no ray changes: normals, with the axes in the order of
+  /// the triangle test, and boxes.
+  struct Faces {
+    HWY_ALIGN float normal[3][kBlockWidth];
+    HWY_ALIGN float bounds[3][2][kBlockWidth];
+
+    HWY_INLINE Faces(const TriangleBlock& block, const int (&axis)[3]) {
+      const D4 d;
+      const auto row = [&](int v, int k) { return hn::Load(d, block.v[v][k]); };
+      V4 e1[3], e2[3];
+      for (int i = 0; i < 3; ++i) {
+        const V4 a = row(0, axis[i]);
+        e1[i] = hn::Sub(row(1, axis[i]), a);
+        e2[i] = hn::Sub(row(2, axis[i]), a);
+      }
+      for (int i = 0; i < 3; ++i) {
+        const int p = (i + 1) % 3, q = (i + 2) % 3;
+        hn::Store(hn::Sub(hn::Mul(e1[p], e2[q]), hn::Mul(e1[q], e2[p])), d, normal[i]);
+      }
+      for (int k = 0; k < 3; ++k) {
+        const V4 a = row(0, k), b = row(1, k), c = row(2, k);
+        hn::Store(hn::Min(a, hn::Min(b, c)), d, bounds[k][0]);
+        hn::Store(hn::Max(a, hn::Max(b, c)), d, bounds[k][1]);
+      }
+    }
+  };
+
+  /// test_planes() of one triangle for the rays of `active` that cross it by `product`.
+  HWY_INLINE void test_plane(const TriangleBlock& block, const Faces& faces, int lane, VB product,
+                             const char* pool, MB active) {
+    const DB d;
+    const DIB di;
+    const auto maybe = hn::AndNot(hn::Lt(product, hn::Zero(d)), active);
+    const auto from_a = [&](int axis) {
+      return hn::Sub(origin_[axis], hn::Set(d, block.v[0][axis][lane]));
+    };
+    const VB nx = hn::Set(d, faces.normal[0][lane]), ny = hn::Set(d, faces.normal[1][lane]),
+             nz = hn::Set(d, faces.normal[2][lane]);
+    const VB height = hn::Add(hn::Add(hn::Mul(nx, from_a(axis_[0])), hn::Mul(ny, from_a(axis_[1]))),
+                              hn::Mul(nz, from_a(axis_[2])));
     const VB slope = hn::Add(hn::Add(hn::Mul(nx, shear_[0]), hn::Mul(ny, shear_[1])), nz);
     VB t = hn::Add(hn::Div(hn::Mul(hn::Neg(shear_[2]), height), slope), hn::Zero(d));
     const auto ordinary =
@@ -256,24 +321,23 @@ class Bundle {
                 hn::Gt(hn::Abs(slope), hn::Set(d, 0x1p-80f)));
     auto crossed = hn::And(maybe, ordinary);
     const auto undecided = hn::AndNot(ordinary, maybe);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, undecided))) crossed = hn::Or(crossed, resolve(triangle, undecided, t));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, undecided)))
+      crossed = hn::Or(crossed, resolve(block.triangle(static_cast<std::uint32_t>(lane)), undecided, t));
 
     // The gate (shape/gate.h). All rays meet the planes from the same sides.
-    const Box3 box = triangle.box();
     VB entry = hn::Set(d, -kInfinity), exit = hn::Set(d, kInfinity);
     for (int k = 0; k < 3; ++k) {
       const bool is_backward = near_row_[k] & kRowBytes;
-      const VB near = hn::Set(d, is_backward ? box.upper[k] : box.lower[k]);
-      const VB far = hn::Set(d, is_backward ? box.lower[k] : box.upper[k]);
-      entry = hn::Max(entry, hn::Add(hn::Mul(near, inverse_[k]), hn::Sub(shift_[k], slack_[k])));
-      exit = hn::Min(exit, hn::Add(hn::Mul(far, inverse_[k]), hn::Add(shift_[k], slack_[k])));
+      const VB near = hn::Set(d, faces.bounds[k][is_backward][lane]);
+      const VB far = hn::Set(d, faces.bounds[k][!is_backward][lane]);
+      entry = hn::Max(entry, hn::Add(hn::Mul(near, inverse_[k]), gate_near_shift_[k]));
+      exit = hn::Min(exit, hn::Add(hn::Mul(far, inverse_[k]), gate_far_shift_[k]));
     }
     t = hn::Add(hn::Min(hn::Max(t, entry), exit), hn::Zero(d));
     const auto in_range = hn::And(hn::Le(entry, exit), hn::And(hn::Ge(t, t_min_), hn::Le(t, limit_)));
     const auto key = hn::Set(di, static_cast<std::int32_t>(block.key[lane]) ^ kTurned);
     const auto comes_first = hn::Or(hn::Lt(t, limit_), hn::RebindMask(d, hn::Lt(key, key_)));
     const auto taken = hn::And(hn::And(crossed, in_range), comes_first);
-    if (hn::AllFalse(d, taken)) return;
 
     const auto taken_i = hn::RebindMask(di, taken);
     const auto at = static_cast<std::int32_t>((reinterpret_cast<const char*>(&block) - pool) / 32);
@@ -311,7 +375,8 @@ class Bundle {
   }
 
   // A lane for each ray.
-  VB origin_[3], inverse_[3], shift_[3], slack_[3], shear_[3], t_min_, limit_;
+  VB origin_[3], shear_[3], t_min_, limit_;
+  VB inverse_[3], near_shift_[3], far_shift_[3], gate_near_shift_[3], gate_far_shift_[3];
   VIB key_, block_, lane_;
 
   // All together.

@@ -2,8 +2,8 @@
 // once for each instruction set (kernels.cpp).
 //
 // u and v are worked out as in shape/triangle.h and the normal as Triangle::normal() does it, in double, with
-// the same operations and so the same bits. Hits are collected lane by lane, with the axes in the order that
-// the triangle test takes them; then everything runs on whole vectors.
+// the same operations and so the same bits. Hits are listed, and then fetched and worked out a whole vector at
+// a time.
 
 #if defined(BOXWOOD_SIMD_FINISH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_SIMD_FINISH_INL_H
@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "boxwood/simd/node-inl.h"
 #include "boxwood/simd/triangle_tree.h"
@@ -22,119 +21,122 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-inline constexpr std::size_t kDoubles = kWidth == 4 ? 2 : HWY_TARGET <= HWY_AVX3 ? 8 : 4;
-using DD = hn::FixedTag<double, kDoubles>;
-using VD = hn::Vec<DD>;
+/// As many hits as one vector has lanes.
+inline constexpr std::size_t kFinished = HWY_MAX_BYTES / 4 < 16 ? HWY_MAX_BYTES / 4 : 16;
+using DF = hn::FixedTag<float, kFinished>;
+using DIF = hn::FixedTag<std::int32_t, kFinished>;
+using VF = hn::Vec<DF>;
+using VIF = hn::Vec<DIF>;
 
-/// The axis behind each.
-inline constexpr std::uint8_t kNext[3] = {1, 2, 0};
-
-/// Some hits, one for each lane.
-struct HitLanes {
+/// Some of the hits of a batch, by the ray's number.
+struct HitList {
   static constexpr std::size_t kSize = 64;
   std::uint32_t count = 0;
-  HWY_ALIGN float vertices[9][kSize];  // vertex, axis
-  HWY_ALIGN float rays[6][kSize];      // origin, direction
-  HWY_ALIGN double last_axis[kSize];   // which of x, y, z stands last
-  HWY_ALIGN float u[kSize], v[kSize], sum[kSize];
-  HWY_ALIGN float normal[3][kSize];
-  std::uint32_t axes[kSize];
-  std::uint32_t hit_index[kSize];
-
-  /// Adds a hit. A miss is worked on like one, but does not count: who hits is hard to foresee.
-  HWY_INLINE void add(const TriangleTree& tree, const Ray& ray, const TriangleHit& found,
-                      std::uint32_t index) {
-    const auto z = static_cast<std::size_t>(longest_axis(abs(ray.direction)));
-    const std::size_t x = kNext[z], y = kNext[x];
-    const std::uint32_t is_hit = found.is_hit();
-    const auto* rows =
-        reinterpret_cast<const float*>(&tree.block_at(found.block & (0u - is_hit))) + found.lane;
-    for (std::size_t k = 0; k < 3; ++k) {
-      vertices[3 * k][count] = rows[12 * k + 4 * x];
-      vertices[3 * k + 1][count] = rows[12 * k + 4 * y];
-      vertices[3 * k + 2][count] = rows[12 * k + 4 * z];
-    }
-    const float *origin = &ray.origin.x, *direction = &ray.direction.x;
-    rays[0][count] = origin[x], rays[1][count] = origin[y], rays[2][count] = origin[z];
-    rays[3][count] = direction[x], rays[4][count] = direction[y], rays[5][count] = direction[z];
-    last_axis[count] = static_cast<double>(z);
-    axes[count] = static_cast<std::uint32_t>(z);
-    hit_index[count] = index;
-    count += is_hit;
-  }
+  HWY_ALIGN std::uint32_t ray_index[kSize + 1];
 };
 
-/// The weights of the vertices, from the lane `i` on.
-HWY_INLINE void weigh(HitLanes& lanes, std::size_t i) {
-  const DW d;
-  const auto ray = [&](int row) { return hn::Load(d, lanes.rays[row] + i); };
-  const VW one = hn::Set(d, 1.0f);
-  const VW sz = hn::Div(one, ray(5)), sx = hn::Mul(ray(3), sz), sy = hn::Mul(ray(4), sz);
-  VW x[3], y[3];
+/// Three coordinates of each lane in the order of the triangle test, when the longest axis is y or z.
+HWY_INLINE void turn_axes(VF (&v)[3], hn::Mask<DF> is_y, hn::Mask<DF> is_z) {
+  const VF x = v[0], y = v[1], z = v[2];
+  v[0] = hn::IfThenElse(is_z, x, hn::IfThenElse(is_y, z, y));
+  v[1] = hn::IfThenElse(is_z, y, hn::IfThenElse(is_y, x, z));
+  v[2] = hn::IfThenElse(is_z, z, hn::IfThenElse(is_y, y, x));
+}
+
+/// The weights of the vertices `v`; the sum of what they were before they were scaled to 1.
+struct Weights {
+  VF u, v, sum;
+};
+HWY_INLINE Weights weigh(VF (&v)[3][3], VF (&origin)[3], VF (&direction)[3]) {
+  const DF d;
+  const VF abs_x = hn::Abs(direction[0]), abs_y = hn::Abs(direction[1]), abs_z = hn::Abs(direction[2]);
+  const auto is_z = hn::And(hn::Gt(abs_z, abs_x), hn::Gt(abs_z, abs_y));
+  const auto is_y = hn::AndNot(is_z, hn::Gt(abs_y, abs_x));
+  turn_axes(origin, is_y, is_z);
+  turn_axes(direction, is_y, is_z);
+
+  const VF sz = hn::Div(hn::Set(d, 1.0f), direction[2]);
+  const VF sx = hn::Mul(direction[0], sz), sy = hn::Mul(direction[1], sz);
+  VF x[3], y[3];
   for (int k = 0; k < 3; ++k) {
-    const auto to = [&](int axis) {
-      return hn::Sub(hn::Load(d, lanes.vertices[3 * k + axis] + i), ray(axis));
-    };
-    const VW z = to(2);
-    x[k] = hn::Sub(to(0), hn::Mul(sx, z));
-    y[k] = hn::Sub(to(1), hn::Mul(sy, z));
+    turn_axes(v[k], is_y, is_z);
+    const VF z = hn::Sub(v[k][2], origin[2]);
+    x[k] = hn::Sub(hn::Sub(v[k][0], origin[0]), hn::Mul(sx, z));
+    y[k] = hn::Sub(hn::Sub(v[k][1], origin[1]), hn::Mul(sy, z));
   }
   const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
-  const VW wa = edge(1, 2), wb = edge(2, 0), wc = edge(0, 1);
-  const VW sum = hn::Add(hn::Add(wa, wb), wc), inverse_sum = hn::Div(one, sum);
-  hn::Store(hn::Mul(wb, inverse_sum), d, lanes.u + i);
-  hn::Store(hn::Mul(wc, inverse_sum), d, lanes.v + i);
-  hn::Store(sum, d, lanes.sum + i);
+  const VF wa = edge(1, 2), wb = edge(2, 0), wc = edge(0, 1);
+  const VF sum = hn::Add(hn::Add(wa, wb), wc), inverse_sum = hn::Div(hn::Set(d, 1.0f), sum);
+  return {hn::Mul(wb, inverse_sum), hn::Mul(wc, inverse_sum), sum};
 }
 
-/// The normals, with the axes still in the triangle test's order.
-HWY_INLINE void find_normals(HitLanes& lanes, std::size_t i) {
-  const DD d;
-  const hn::Rebind<float, DD> df;
-  const auto vertex = [&](int row) { return hn::PromoteTo(d, hn::Load(df, lanes.vertices[row] + i)); };
-  VD e1[3], e2[3], n[3];
-  for (int k = 0; k < 3; ++k) {
-    const VD a = vertex(k);
-    e1[k] = hn::Sub(vertex(3 + k), a);
-    e2[k] = hn::Sub(vertex(6 + k), a);
-  }
-  for (int k = 0; k < 3; ++k) {
-    const int p = (k + 1) % 3, q = (k + 2) % 3;
-    n[k] = hn::Sub(hn::Mul(e1[p], e2[q]), hn::Mul(e1[q], e2[p]));
-  }
-
-  // Squares are added x, y, z, and the sum of three depends on which comes last.
-  const VD xx = hn::Mul(n[0], n[0]), yy = hn::Mul(n[1], n[1]), zz = hn::Mul(n[2], n[2]);
-  const VD axis = hn::Load(d, lanes.last_axis + i);
-  const auto is_x = hn::Eq(axis, hn::Zero(d)), is_y = hn::Eq(axis, hn::Set(d, 1.0));
-  const VD first_two =
-      hn::IfThenElse(is_x, hn::Add(zz, xx), hn::IfThenElse(is_y, hn::Add(yy, zz), hn::Add(xx, yy)));
-  const VD last = hn::IfThenElse(is_x, yy, hn::IfThenElse(is_y, xx, zz));
-  const VD size = hn::Sqrt(hn::Add(first_two, last));
-  const VD scale = hn::IfThenElseZero(hn::Gt(size, hn::Zero(d)), hn::Div(hn::Set(d, 1.0), size));
-  for (int k = 0; k < 3; ++k) hn::Store(hn::DemoteTo(df, hn::Mul(n[k], scale)), df, lanes.normal[k] + i);
+/// The normals of the triangles with the vertices `v`.
+HWY_INLINE void find_normals(const VF (&v)[3][3], VF (&normal)[3]) {
+  const hn::FixedTag<double, kFinished / 2> d;
+  const hn::FixedTag<float, kFinished / 2> half;
+  using VD = hn::Vec<decltype(d)>;
+  const auto of = [&](const auto& vertex, auto (&n)[3]) {
+    VD e1[3], e2[3], c[3];
+    for (int k = 0; k < 3; ++k) {
+      const VD a = vertex(0, k);
+      e1[k] = hn::Sub(vertex(1, k), a);
+      e2[k] = hn::Sub(vertex(2, k), a);
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int p = (k + 1) % 3, q = (k + 2) % 3;
+      c[k] = hn::Sub(hn::Mul(e1[p], e2[q]), hn::Mul(e1[q], e2[p]));
+    }
+    const VD size2 = hn::Add(hn::Add(hn::Mul(c[0], c[0]), hn::Mul(c[1], c[1])), hn::Mul(c[2], c[2]));
+    const VD size = hn::Sqrt(size2);
+    const VD scale = hn::IfThenElseZero(hn::Gt(size, hn::Zero(d)), hn::Div(hn::Set(d, 1.0), size));
+    for (int k = 0; k < 3; ++k) n[k] = hn::DemoteTo(half, hn::Mul(c[k], scale));
+  };
+  hn::Vec<decltype(half)> lower[3], upper[3];
+  of([&](int i, int k) { return hn::PromoteTo(d, hn::LowerHalf(half, v[i][k])); }, lower);
+  of([&](int i, int k) { return hn::PromoteTo(d, hn::UpperHalf(half, v[i][k])); }, upper);
+  for (int k = 0; k < 3; ++k) normal[k] = hn::Combine(DF(), upper[k], lower[k]);
 }
 
-/// Works out what was collected, and starts anew.
-inline void finish_lanes(HitLanes& lanes, const TriangleTree& tree, std::span<const Ray> rays,
-                         const TriangleHit* found, Hit* hits) {
-  // Whole vectors: what is behind the last lane comes from an earlier turn and goes nowhere.
-  for (std::size_t i = 0; i < lanes.count; i += kWidth) weigh(lanes, i);
-  for (std::size_t i = 0; i < lanes.count; i += kDoubles) find_normals(lanes, i);
+/// Works out kFinished hits, of which `count` are wanted.
+HWY_INLINE void finish_group(const TriangleTree& tree, const Ray* rays, const TriangleHit* found,
+                             const std::uint32_t* ray_index, std::size_t count, Hit* hits) {
+  const DF d;
+  const DIF di;
+  const VIF index = hn::Load(di, reinterpret_cast<const std::int32_t*>(ray_index));
 
-  for (std::size_t n = 0; n < lanes.count; ++n) {
-    const std::uint32_t i = lanes.hit_index[n], z = lanes.axes[n];
+  // Fetch rays and triangles. Offsets count floats from the middle of what 32 bits reach.
+  VF origin[3], direction[3], v[3][3], normal[3];
+  const VIF ray_at = hn::ShiftLeft<3>(index), found_at = hn::ShiftLeft<2>(index);
+  for (int k = 0; k < 3; ++k) {
+    origin[k] = hn::GatherIndex(d, &rays->origin.x + k, ray_at);
+    direction[k] = hn::GatherIndex(d, &rays->direction.x + k, ray_at);
+  }
+  const auto* words = reinterpret_cast<const std::int32_t*>(found);
+  const VIF block = hn::GatherIndex(di, words + 2, found_at), lane = hn::GatherIndex(di, words + 3, found_at);
+  const VIF vertex_at = hn::Add(hn::Xor(hn::ShiftLeft<3>(block), hn::Set(di, INT32_MIN)), lane);
+  const std::uintptr_t middle = reinterpret_cast<std::uintptr_t>(tree.pool()) + (std::uintptr_t(1) << 33);
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned k = 0; k < 3; ++k)
+      v[i][k] = hn::GatherIndex(d, reinterpret_cast<const float*>(middle + 48 * i + 16 * k), vertex_at);
+
+  find_normals(v, normal);
+  const Weights weights = weigh(v, origin, direction);
+
+  HWY_ALIGN float us[kFinished], vs[kFinished], sums[kFinished], normals[3][kFinished];
+  hn::Store(weights.u, d, us);
+  hn::Store(weights.v, d, vs);
+  hn::Store(weights.sum, d, sums);
+  for (int k = 0; k < 3; ++k) hn::Store(normal[k], d, normals[k]);
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint32_t i = ray_index[n];
     Hit& hit = hits[i];
     hit.t = found[i].t;
-    hit.u = lanes.u[n];
-    hit.v = lanes.v[n];
-    float* normal = &hit.normal.x;
-    normal[kNext[z]] = lanes.normal[0][n];
-    normal[kNext[kNext[z]]] = lanes.normal[1][n];
-    normal[z] = lanes.normal[2][n];
+    hit.u = us[n];
+    hit.v = vs[n];
+    hit.normal = {normals[0][n], normals[1][n], normals[2][n]};
 
     // Weights that the scalar test would take through its exact branch go there.
-    const float size = std::fabs(lanes.sum[n]);
+    const float size = std::fabs(sums[n]);
     if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) continue;
     const Triangle triangle = tree.block_at(found[i].block).triangle(found[i].lane);
     Crossing crossing;
@@ -143,25 +145,32 @@ inline void finish_lanes(HitLanes& lanes, const TriangleTree& tree, std::span<co
     hit.u = crossing.u;
     hit.v = crossing.v;
   }
-  lanes.count = 0;
+}
+
+inline void finish_list(HitList& list, const TriangleTree& tree, const Ray* rays, const TriangleHit* found,
+                        Hit* hits) {
+  // Whole vectors: what is missing in the last one is its last hit once more.
+  for (std::size_t n = list.count; n % kFinished != 0; ++n)
+    list.ray_index[n] = list.ray_index[list.count - 1];
+  for (std::size_t n = 0; n < list.count; n += kFinished)
+    finish_group(tree, rays, found, list.ray_index + n, std::min(kFinished, list.count - n), hits);
+  list.count = 0;
 }
 
 inline void finish_all(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
                        Hit* hits) {
-  constexpr std::size_t kAhead = 12;
-  HitLanes lanes;
-  std::memset(lanes.vertices, 0, sizeof lanes.vertices);
-  std::memset(lanes.rays, 0, sizeof lanes.rays);
-  std::memset(lanes.last_axis, 0, sizeof lanes.last_axis);
+  HitList list;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const TriangleHit& ahead = found[std::min(i + kAhead, rays.size() - 1)];
-    const char* block = reinterpret_cast<const char*>(&tree.block_at(ahead.block & (0u - ahead.is_hit())));
+    // Without a branch: who hits is hard to foresee.
+    const std::uint32_t is_hit = found[i].is_hit();
+    const char* block = reinterpret_cast<const char*>(&tree.block_at(found[i].block & (0u - is_hit)));
     for (int line = 0; line < 3; ++line) __builtin_prefetch(block + 64 * line);
     hits[i] = Hit{};
-    lanes.add(tree, rays[i], found[i], static_cast<std::uint32_t>(i));
-    if (lanes.count == HitLanes::kSize) finish_lanes(lanes, tree, rays, found, hits);
+    list.ray_index[list.count] = static_cast<std::uint32_t>(i);
+    list.count += is_hit;
+    if (list.count == HitList::kSize) finish_list(list, tree, rays.data(), found, hits);
   }
-  finish_lanes(lanes, tree, rays, found, hits);
+  finish_list(list, tree, rays.data(), found, hits);
 }
 
 /// Works out one hit, whose ray is still at hand.

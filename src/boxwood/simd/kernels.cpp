@@ -74,17 +74,12 @@ bool placed_all_hits(const TriangleTree& tree, const PreparedRay& ray, const Pas
 
 void closest_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, TriangleHit* hits,
                   std::vector<std::uint32_t>& unusual) {
-  const auto output = [&](std::uint32_t i, const TriangleHit& hit) {
-    hits[i] = hit;
-    if (!hit.is_hit()) hits[i].t = kInfinity;
-  };
-  trace_batch<false>(tree, rays, bounds, output, unusual);
+  trace_batch(tree, rays, bounds, hits, unusual);
 }
 
 void any_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
               std::vector<std::uint32_t>& unusual) {
-  const auto output = [&](std::uint32_t i, const TriangleHit& hit) { hits[i] = hit.is_hit(); };
-  trace_batch<true>(tree, rays, bounds, output, unusual);
+  trace_batch(tree, rays, bounds, hits, unusual);
 }
 
 void finish_hits(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found, Hit* hits) {
