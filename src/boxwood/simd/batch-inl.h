@@ -38,18 +38,24 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
   for (std::size_t begin = 0; begin < rays.size(); begin += kAtOnce) {
     // Trace bundles; note the rest.
     const std::size_t end = std::min(rays.size(), begin + kAtOnce);
-    std::size_t count = 0;
+    std::size_t count = 0, bundle_count = 0, bundle_begin[2];
+    Bundle<kAny> bundles[2];
+    const auto trace = [&] {
+      trace_bundles(pool, std::span(bundles, bundle_count));
+      for (std::size_t k = 0; k < bundle_count; ++k) bundles[k].store(&hits[bundle_begin[k]]);
+      bundle_count = 0;
+    };
     for (std::size_t i = begin; i < end;) {
       const std::size_t group = std::min(end - i, std::size_t(kBundle));
-      Bundle<kAny> bundle;
-      if (group == kBundle && may_be_bundle(&rays[i]) && bundle.prepare(&rays[i], bounds)) {
-        bundle.trace(pool);
-        bundle.store(&hits[i]);
+      if (group == kBundle && may_be_bundle(&rays[i]) && bundles[bundle_count].prepare(&rays[i], bounds)) {
+        bundle_begin[bundle_count++] = i;
+        if (bundle_count == 2) trace();
       } else {
         for (std::size_t k = 0; k < group; ++k) order[count++] = static_cast<std::uint32_t>(i + k);
       }
       i += group;
     }
+    if (bundle_count > 0) trace();
 
     // The rest takes turns.
     const std::span<const std::uint32_t> rest(order, count);

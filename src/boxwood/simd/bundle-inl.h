@@ -120,28 +120,29 @@ class Bundle {
     return true;
   }
 
-  void trace(const char* pool) {
-    HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
-    std::size_t top = 0;  // entries below; a reference is that of the parent and the child's place in it
-    top = push(pool, 0, keys, refs);
-    while (top > 0) {
-      --top;
-      if (keys[top] > (std::bit_cast<std::int32_t>(last_t_) | 7)) continue;
-      const auto parent = static_cast<std::uint32_t>(refs[top]) & ~15u;
-      const std::uint32_t child = static_cast<std::uint32_t>(refs[top]) & 7;
-      const char* node = node_at(pool, parent);
-      const MB active = test_box(node, child);
-      if (hn::AllFalse(DB(), active)) continue;
-      const auto ref = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes)[child];
-      if ((ref & 3) == 0) {
-        top += push(pool, ref, keys + top, refs + top);
-        continue;
-      }
-      const TriangleBlock* block = block_at(pool, ref);
-      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) test_block(*block, pool, active);
-      last_t_ = hn::GetLane(hn::MaxOfLanes(DB(), limit_));
-      if (kAny && last_t_ < 0) return;
+  /// Puts the children of the root on the stack.
+  HWY_INLINE void start(const char* pool) { top_ = push(pool, 0, keys_, refs_); }
+
+  /// Takes a child off the stack and sees to it; false when there is none left.
+  HWY_INLINE bool step(const char* pool) {
+    if (top_ == 0) return false;
+    --top_;
+    if (keys_[top_] > (std::bit_cast<std::int32_t>(last_t_) | 7)) return true;
+    const auto parent = static_cast<std::uint32_t>(refs_[top_]) & ~15u;
+    const std::uint32_t child = static_cast<std::uint32_t>(refs_[top_]) & 7;
+    const char* node = node_at(pool, parent);
+    const MB active = test_box(node, child);
+    if (hn::AllFalse(DB(), active)) return true;
+    const auto ref = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes)[child];
+    if ((ref & 3) == 0) {
+      top_ += push(pool, ref, keys_ + top_, refs_ + top_);
+      return true;
     }
+    const TriangleBlock* block = block_at(pool, ref);
+    for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) test_block(*block, pool, active);
+    last_t_ = hn::GetLane(hn::MaxOfLanes(DB(), limit_));
+    if (kAny && last_t_ < 0) top_ = 0;
+    return true;
   }
 
   /// Writes what was found; the t of a miss is +inf.
@@ -307,9 +308,7 @@ class Bundle {
     const DB d;
     const DIB di;
     const auto maybe = hn::AndNot(hn::Lt(product, hn::Zero(d)), active);
-    const auto from_a = [&](int axis) {
-      return hn::Sub(origin_[axis], hn::Set(d, block.v[0][axis][lane]));
-    };
+    const auto from_a = [&](int axis) { return hn::Sub(origin_[axis], hn::Set(d, block.v[0][axis][lane])); };
     const VB nx = hn::Set(d, faces.normal[0][lane]), ny = hn::Set(d, faces.normal[1][lane]),
              nz = hn::Set(d, faces.normal[2][lane]);
     const VB height = hn::Add(hn::Add(hn::Mul(nx, from_a(axis_[0])), hn::Mul(ny, from_a(axis_[1]))),
@@ -379,11 +378,25 @@ class Bundle {
   VB inverse_[3], near_shift_[3], far_shift_[3], gate_near_shift_[3], gate_far_shift_[3];
   VIB key_, block_, lane_;
 
-  // All together.
+  // All together. An entry of the stack is a reference of the parent and the child's place in it.
+  std::size_t top_;  // entries below
+  HWY_ALIGN std::int32_t keys_[kStackSize], refs_[kStackSize];
   int axis_[3], near_row_[3], far_row_[3];
   VW low_inverse_[3], high_inverse_[3], near_low_[3], near_high_[3], far_low_[3], far_high_[3];
   float first_t_, last_t_;
 };
+
+/// Traces two bundles in turns, so that one works while the other waits; or one alone.
+template <bool kAny>
+HWY_NOINLINE void trace_bundles(const char* pool, std::span<Bundle<kAny>> bundles) {
+  for (Bundle<kAny>& bundle : bundles) bundle.start(pool);
+  if (bundles.size() == 2)
+    while (bundles[0].step(pool) && bundles[1].step(pool)) {
+    }
+  for (Bundle<kAny>& bundle : bundles)
+    while (bundle.step(pool)) {
+    }
+}
 
 /// Whether it is worth a closer look if kBundle rays go the same way: the first and the last do.
 HWY_INLINE bool may_be_bundle(const Ray* rays) {

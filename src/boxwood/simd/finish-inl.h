@@ -2,8 +2,8 @@
 // once for each instruction set (kernels.cpp).
 //
 // u and v are worked out as in shape/triangle.h and the normal as Triangle::normal() does it, in double, with
-// the same operations and so the same bits. Hits are listed, and then fetched and worked out a whole vector at
-// a time.
+// the same operations and so the same bits. Hits are listed, and then fetched and worked out a whole vector
+// at a time.
 
 #if defined(BOXWOOD_SIMD_FINISH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_SIMD_FINISH_INL_H
@@ -75,7 +75,7 @@ HWY_INLINE void find_normals(const VF (&v)[3][3], VF (&normal)[3]) {
   const hn::FixedTag<double, kFinished / 2> d;
   const hn::FixedTag<float, kFinished / 2> half;
   using VD = hn::Vec<decltype(d)>;
-  const auto of = [&](const auto& vertex, auto (&n)[3]) {
+  const auto of = [&](const auto& vertex, auto(&n)[3]) {
     VD e1[3], e2[3], c[3];
     for (int k = 0; k < 3; ++k) {
       const VD a = vertex(0, k);
