@@ -145,6 +145,20 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
           current = static_cast<std::uint32_t>(children[__builtin_ctz(bits)]);
           continue;
         }
+        const std::uint32_t others = bits & (bits - 1);
+        if ((others & (others - 1)) == 0) {
+          // Two children: sooner compared than sorted.
+          HWY_ALIGN std::int32_t entry[kWidth];
+          hn::Store(slabs.entry, di, entry);
+          const int i = __builtin_ctz(bits), j = __builtin_ctz(others);
+          const int near = entry[i] <= entry[j] ? i : j, far = i ^ j ^ near;
+          prefetch_lines(node_at(pool, static_cast<std::uint32_t>(children[far])));
+          ++top;
+          keys[top] = entry[far];
+          refs[top] = children[far];
+          current = static_cast<std::uint32_t>(children[near]);
+          continue;
+        }
         const auto count = static_cast<std::size_t>(__builtin_popcount(bits));
         for (std::uint32_t b = bits; b; b &= b - 1)
           prefetch_lines(node_at(pool, static_cast<std::uint32_t>(children[__builtin_ctz(b)])));
