@@ -8,6 +8,7 @@ namespace boxwood::app {
 /// Each adds its subcommand to `program`; the callback throws on failure, and main turns that into one line
 /// and exit code 1.
 void add_render(CLI::App& program);
+void add_merge(CLI::App& program);
 void add_info(CLI::App& program);
 void add_ladder(CLI::App& program);
 void add_bench(CLI::App& program);

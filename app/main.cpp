@@ -11,6 +11,7 @@
 #include "boxwood/core/error.h"
 #include "commands.h"
 #include "console.h"
+#include "output_file.h"
 
 namespace {
 
@@ -50,6 +51,7 @@ void run(CLI::App& program, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   boxwood::app::open_closed_streams();
+  boxwood::app::survive_size_limits();
   CLI::App program{
       "Boxwood ray traces scenes through bounding volume hierarchies,\n"
       "and shows what that saves."};
@@ -60,12 +62,14 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  boxwood render -o picture.png           a picture of the program's own scene\n"
       "  boxwood render bunny.obj -o bunny.png   a picture of a file\n"
+      "  boxwood merge part*.exr -o all.exr      one picture from the shards of a farm\n"
       "  boxwood info bunny.obj                  what is in it, what its tree is like\n"
       "  boxwood ladder                          from brute force to the best tree\n"
       "  boxwood bench bunny.obj                 how fast it is, beside Embree\n"
       "'boxwood COMMAND --help' tells more.\n"
       "Exit codes: 0 done, 1 failed, 2 wrong usage.");
   boxwood::app::add_render(program);
+  boxwood::app::add_merge(program);
   boxwood::app::add_info(program);
   boxwood::app::add_ladder(program);
   boxwood::app::add_bench(program);

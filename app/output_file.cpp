@@ -1,6 +1,7 @@
 #include "output_file.h"
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <string>
 
@@ -36,6 +37,10 @@ void check_writable(const std::filesystem::path& path) {
                         std::strerror(errno) + ")");
   close(file);
   unlink(probe.c_str());
+}
+
+void survive_size_limits() {
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace boxwood::app

@@ -9,4 +9,8 @@ namespace boxwood::app {
 /// or `path` is a folder itself. Leaves nothing behind.
 void check_writable(const std::filesystem::path& path);
 
+/// From here on, writing more than the shell allows (ulimit -f) fails like writing to a full disk, instead of
+/// ending the program.
+void survive_size_limits();
+
 }  // namespace boxwood::app

@@ -30,7 +30,8 @@ TEST_F(Program, HelpAndVersion) {
     EXPECT_NE(help.out.find(command), std::string::npos);
   const Outcome render_help = run("render --help");
   EXPECT_EQ(render_help.exit_code, 0);
-  for (const char* word : {"--size", "--samples", "--mode", "--threads", "--quiet", "stilllife", "Examples"})
+  for (const char* word : {"--size", "--samples", "--noise", "--time", "--resume", "--shard", "--layers",
+                           "--filter", "--mode", "--threads", "--quiet", "stilllife", "Examples"})
     EXPECT_NE(render_help.out.find(word), std::string::npos) << word;
   const Outcome version = run("--version");
   EXPECT_EQ(version.exit_code, 0);
@@ -53,6 +54,14 @@ TEST_F(Program, WrongUsageIsCodeTwo) {
   expect_refusal("render cornell -o picture", 2, ".png");
   expect_refusal("render cornell --color blue", 2, "--color");
   expect_refusal("render cornell cornell -o a.png", 2, "cornell");
+  expect_refusal("render --noise 0", 2, "--noise");
+  expect_refusal("render --time -1", 2, "--time");
+  expect_refusal("render --filter round", 2, "round");
+  expect_refusal("render --layers fog -o a.exr", 2, "fog");
+  expect_refusal("render --layers depth -o a.png", 2, "--layers");
+  expect_refusal("render --tone dark", 2, "dark");
+  expect_refusal("render --preview a.txt", 2, "a.txt");
+  expect_refusal("render --checkpoint often", 2, "often");
 }
 
 TEST_F(Program, ImpossibleSizesAreRefusedBeforeAnyWork) {
@@ -186,7 +195,7 @@ TEST_F(Program, ManyWarningsDoNotFloodTheTerminal) {
 }
 
 TEST_F(Program, HelpFitsATerminal) {
-  for (const std::string command : {"", "render ", "info ", "ladder "}) {
+  for (const std::string command : {"", "render ", "merge ", "info ", "ladder "}) {
     std::istringstream help(run(command + "--help").out);
     for (std::string line; std::getline(help, line);) EXPECT_LE(line.size(), 80u) << command << ": " << line;
   }
@@ -199,7 +208,7 @@ TEST_F(Program, InterruptWritesWhatThereIs) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("stopped"), std::string::npos) << outcome.err;
   EXPECT_GT(std::filesystem::file_size(folder_ / "a.png"), 100u);
-  EXPECT_EQ(file_count(), 1u);
+  EXPECT_EQ(file_count(), 2u) << "the picture and the checkpoint";
 }
 
 }  // namespace

@@ -58,5 +58,32 @@ TEST_F(WholeFiles, PipesStayPipesAndDevicesDevices) {
   EXPECT_EQ(file_count(), 3u);
 }
 
+TEST_F(WholeFiles, PartsOfKilledProgramsGoAndNothingElse) {
+  for (const char* name : {"a.exr.part12-0", "a.exr.part99999-17"}) write(name, "torn");
+  for (const char* name : {"a.exr", "a.exr.part", "a.exr.part12", "a.exr.part-1", "a.exr.part12-",
+                           "a.exr.part1-2.exr", "a.exr.partial-2", "b.exr.part12-0"})
+    write(name, "somebody's");
+  remove_parts(path("a.exr"));
+  EXPECT_EQ(file_count(), 8u);
+  EXPECT_FALSE(std::filesystem::exists(path("a.exr.part12-0")));
+  EXPECT_FALSE(std::filesystem::exists(path("a.exr.part99999-17")));
+}
+
+TEST_F(WholeFiles, PiecesBecomeOneFileOrNone) {
+  write_file(path("a"), [](const ByteSink& sink) {
+    sink("one ");
+    sink("two");
+  });
+  EXPECT_EQ(read(path("a")), "one two");
+  EXPECT_THROW(write_file(path("a"),
+                          [](const ByteSink& sink) {
+                            sink("three");
+                            throw std::runtime_error("no more");
+                          }),
+               std::runtime_error);
+  EXPECT_EQ(read(path("a")), "one two");
+  EXPECT_EQ(file_count(), 1u);
+}
+
 }  // namespace
 }  // namespace boxwood::io

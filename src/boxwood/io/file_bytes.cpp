@@ -5,12 +5,19 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <vector>
 
 #include <unistd.h>
 
 #include "boxwood/core/error.h"
 
 namespace boxwood::io {
+namespace {
+
+// Between the name of a file that is being written and a number; the whole file gets the name itself.
+constexpr const char* kPartEnding = ".part";
+
+}  // namespace
 
 std::string read_file(const std::filesystem::path& path) {
   // Say plainly what is wrong with the path itself;
@@ -54,6 +61,10 @@ bool is_device_or_pipe(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  write_file(path, [bytes](const ByteSink& sink) { sink(bytes); });
+}
+
+void write_file(const std::filesystem::path& path, const std::function<void(const ByteSink&)>& produce) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
@@ -70,23 +81,58 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
   // A name of our own, even when several threads and programs write the same file at once.
   static std::atomic<unsigned> serial{0};
   std::filesystem::path part = target;
-  if (!is_stream) part += ".part" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
+  if (!is_stream) part += kPartEnding + std::to_string(::getpid()) + "-" + std::to_string(serial++);
+  const auto give_up = [&] {
+    if (!is_stream) std::filesystem::remove(part, error);
+  };
 
   errno = 0;
   std::ofstream stream(part, std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  int first_errno = stream ? 0 : errno;
+  try {
+    produce([&](std::string_view bytes) {
+      if (!stream) return;  // Say why the first write failed, not the last.
+      errno = 0;
+      stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+      if (!stream) first_errno = errno;
+    });
+  } catch (...) {
+    stream.close();
+    give_up();
+    throw;
+  }
+  errno = 0;
   stream.close();
   std::string reason;
   if (!stream) {
-    reason = errno != 0 ? std::strerror(errno) : "the disk took only a part of it";
+    if (first_errno == 0) first_errno = errno;
+    reason = first_errno != 0 ? std::strerror(first_errno) : "the disk took only a part of it";
   } else if (!is_stream) {
     std::filesystem::rename(part, target, error);
     if (error) reason = error.message();
   }
   if (!reason.empty()) {
-    if (!is_stream) std::filesystem::remove(part, error);
+    give_up();
     throw FileError(path.string(), "", "cannot be written: " + reason);
   }
+}
+
+void remove_parts(const std::filesystem::path& path) {
+  // The number of a process and a serial number, and nothing else: other names may be anybody's.
+  const auto is_part = [start = path.filename().string() + kPartEnding](const std::string& name) {
+    if (!name.starts_with(start)) return false;
+    const std::size_t dash = name.find('-', start.size());
+    return dash != std::string::npos && dash > start.size() && dash + 1 < name.size() &&
+           name.find_first_not_of("0123456789", start.size()) == dash &&
+           name.find_first_not_of("0123456789", dash + 1) == std::string::npos;
+  };
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  std::vector<std::filesystem::path> parts;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    if (is_part(entry->path().filename().string())) parts.push_back(entry->path());
+  for (const std::filesystem::path& part : parts) std::filesystem::remove(part, error);
 }
 
 std::string lower_extension(const std::filesystem::path& path) {

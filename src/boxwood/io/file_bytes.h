@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,14 @@ bool is_device_or_pipe(const std::filesystem::path& path);
 /// keeps what it was when something fails. A link stays and the file behind it is replaced; devices and pipes
 /// are written to. Throws FileError.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// The same for bytes that come in pieces: `produce` hands them to `sink`, one after another. When `produce`
+/// throws, nothing is left behind.
+using ByteSink = std::function<void(std::string_view)>;
+void write_file(const std::filesystem::path& path, const std::function<void(const ByteSink& sink)>& produce);
+
+/// Removes the parts that programs left beside `path` that were killed while they wrote it.
+void remove_parts(const std::filesystem::path& path);
 
 /// The ending of a file name in lower case with its dot, such as ".obj"; empty where there is none.
 std::string lower_extension(const std::filesystem::path& path);

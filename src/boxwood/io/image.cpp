@@ -2,8 +2,10 @@
 
 #include <array>
 #include <bit>
+#include <cstring>
 #include <memory>
 
+#include <Imath/half.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -22,6 +24,9 @@ void keep_to_this_thread(File& file) {
   (void)is_done;
   file.threads(1);
 }
+
+// The attribute of an .exr that holds a text of the program's own.
+constexpr const char* kNoteName = "boxwood";
 
 // A message on one line.
 std::string one_line(std::string text) {
@@ -95,6 +100,14 @@ class PictureFile {
     return !spec().format.is_floating_point() && spec()["oiio:ColorSpace"].get() != "Linear";
   }
 
+  /// All channels of a pixel one after another, each of its own kind.
+  std::vector<char> read_native() {
+    std::vector<char> values(std::size_t(spec().width) * spec().height * spec().pixel_bytes(true));
+    if (!input_->read_image(0, 0, 0, spec().nchannels, OIIO::TypeDesc::UNKNOWN, values.data()))
+      throw FileError(name_, "", "the picture is damaged: " + one_line(input_->geterror()));
+    return values;
+  }
+
   template <class T>
   std::vector<T> read(OIIO::TypeDesc type) {
     std::vector<T> values(std::size_t(spec().width) * spec().height * spec().nchannels);
@@ -163,7 +176,49 @@ auto guarded(const std::string& name, const Body& body) {
 
 }  // namespace
 
-void write_image(const std::filesystem::path& path, const Image& image) {
+// Half is enough for what eyes look at: light, colors, directions.
+bool may_be_half(const std::string& channel) {
+  return channel == "R" || channel == "G" || channel == "B" || channel == "A" || channel == "Y" ||
+         channel.ends_with(".R") || channel.ends_with(".G") || channel.ends_with(".B") ||
+         channel.starts_with("normal.");
+}
+
+// The channels of an .exr one after another, each of its own kind, and the words behind them.
+struct ExrPixels {
+  ExrPixels(const Image& image, const ExrOptions& exr, OIIO::ImageSpec& spec) {
+    spec.channelnames = image.channel_names;
+    for (const std::string& name : image.channel_names)
+      spec.channelformats.push_back(exr.is_half && may_be_half(name) ? OIIO::TypeDesc::HALF
+                                                                     : OIIO::TypeDesc::FLOAT);
+    for (const std::string& name : exr.word_names) {
+      spec.channelnames.push_back(name);
+      spec.channelformats.push_back(OIIO::TypeDesc::UINT32);
+    }
+    spec.nchannels = static_cast<int>(spec.channelnames.size());
+
+    const std::size_t pixels = std::size_t(image.width) * image.height, words = exr.word_names.size();
+    bytes.reserve(pixels * spec.nchannels * 4);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      for (int c = 0; c < image.channels; ++c) {
+        const float value = image.pixels[pixel * image.channels + c];
+        if (spec.channelformats[c] == OIIO::TypeDesc::HALF)
+          put(half(min(max(value, -HALF_MAX), HALF_MAX)));
+        else
+          put(value);
+      }
+      for (std::size_t w = 0; w < words; ++w) put(exr.words[pixel * words + w]);
+    }
+  }
+
+  template <class T>
+  void put(T value) {
+    const char* first = reinterpret_cast<const char*>(&value);
+    bytes.insert(bytes.end(), first, first + sizeof(T));
+  }
+  std::vector<char> bytes;
+};
+
+void write_image(const std::filesystem::path& path, const Image& image, const ExrOptions& exr) {
   const std::string name = path.string(), extension = lower_extension(path);
   const bool is_png = extension == ".png";
   if (!is_png && extension != ".exr" && extension != ".hdr")
@@ -184,6 +239,13 @@ void write_image(const std::filesystem::path& path, const Image& image) {
   // equal pictures are to be equal files.
   spec.attribute("DateTime", "1970:01:01 00:00:00");
 
+  if (!exr.note.empty()) spec.attribute(kNoteName, exr.note);
+  const bool is_mixed = extension == ".exr" && (exr.is_half || !exr.word_names.empty());
+  if (is_mixed && image.channel_names.size() != std::size_t(image.channels))
+    throw FileError(name, "", "channels of different kinds need names");
+  std::vector<char> mixed;
+  if (is_mixed) mixed = ExrPixels(image, exr, spec).bytes;
+
   // Encode into memory, so that a full disk meets one writer that knows how to clean up.
   std::vector<unsigned char> bytes;
   guarded(name, [&] {
@@ -203,6 +265,8 @@ void write_image(const std::filesystem::path& path, const Image& image) {
             to_byte(is_alpha(image, int(i % image.channels)) ? x : srgb_from_linear(min(1.0f, max(0.0f, x))));
       }
       is_written = output->write_image(OIIO::TypeDesc::UINT8, encoded.data());
+    } else if (is_written && is_mixed) {
+      is_written = output->write_image(OIIO::TypeDesc::UNKNOWN, mixed.data());
     } else if (is_written) {
       is_written = output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
     }
@@ -227,6 +291,45 @@ Image read_image(const std::filesystem::path& path) {
         if (int(i % image.channels) != file.spec().alpha_channel)
           image.pixels[i] = linear_from_srgb(image.pixels[i]);
     return image;
+  });
+}
+
+ExrFile read_exr(const std::filesystem::path& path) {
+  const std::string name = path.string(), bytes = read_file(path);
+  if (!std::string_view(bytes).starts_with("\x76\x2f\x31\x01"))
+    throw FileError(name, "", "is not an OpenEXR file");
+  return guarded(name, [&] {
+    PictureFile file(bytes, name);
+    const OIIO::ImageSpec& spec = file.spec();
+    ExrFile found;
+    found.note = std::string(spec.get_string_attribute(kNoteName));
+    for (int c = 0; c < spec.nchannels; ++c)
+      (spec.channelformat(c) == OIIO::TypeDesc::UINT32 ? found.word_names : found.image.channel_names)
+          .push_back(spec.channelnames[c]);
+    found.image.width = spec.width;
+    found.image.height = spec.height;
+    found.image.channels = static_cast<int>(found.image.channel_names.size());
+
+    // Sort the values of each pixel by their kind.
+    const std::vector<char> values = file.read_native();
+    const char* at = values.data();
+    const auto take = [&at](auto value) {
+      std::memcpy(&value, at, sizeof(value));
+      at += sizeof(value);
+      return value;
+    };
+    const std::size_t pixels = std::size_t(spec.width) * spec.height;
+    found.image.pixels.reserve(pixels * found.image.channels);
+    found.words.reserve(pixels * found.word_names.size());
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+      for (int c = 0; c < spec.nchannels; ++c) {
+        if (spec.channelformat(c) == OIIO::TypeDesc::UINT32)
+          found.words.push_back(take(std::uint32_t{}));
+        else
+          found.image.pixels.push_back(spec.channelformat(c) == OIIO::TypeDesc::HALF ? float(take(half()))
+                                                                                     : take(0.0f));
+      }
+    return found;
   });
 }
 

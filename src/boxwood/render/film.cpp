@@ -2,27 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 
 namespace boxwood::render {
-namespace {
-
-/// Copies the bytes of `from` to `words`, and moves on to the next free word.
-template <class T>
-void put(const std::vector<T>& from, std::span<std::uint32_t>& words) {
-  const std::size_t used = (from.size() * sizeof(T) + 3) / 4;
-  words[used - 1] = 0;  // its last bytes may not be used
-  std::memcpy(words.data(), from.data(), from.size() * sizeof(T));
-  words = words.subspan(used);
-}
-
-template <class T>
-void take(std::vector<T>& to, std::span<const std::uint32_t>& words) {
-  std::memcpy(static_cast<void*>(to.data()), words.data(), to.size() * sizeof(T));
-  words = words.subspan((to.size() * sizeof(T) + 3) / 4);
-}
-
-}  // namespace
 
 TileSums::TileSums(std::size_t pixel_count, std::span<const int> group_sizes) : first_channel_{0} {
   for (const int size : group_sizes)
@@ -58,24 +39,48 @@ void TileSums::read(std::size_t pixel, std::size_t group, std::span<double> sums
     sums[c] = value_of(found[c], places_[group_at(pixel, group)]);
 }
 
-std::size_t TileSums::word_count() const {
-  return digits_.size() * sizeof(Digits) / 4 + counts_.size() + (places_.size() + 3) / 4 + samples_.size();
-}
-
 void TileSums::to_words(std::span<std::uint32_t> words) const {
-  put(digits_, words);
-  put(counts_, words);
-  put(places_, words);
-  put(samples_, words);
+  assert(words.size() == word_count());
+  const std::size_t groups = first_channel_.size() - 1;
+  std::uint32_t* out = words.data();
+  const auto put = [&out](std::uint64_t x) {
+    *out++ = static_cast<std::uint32_t>(x);
+    *out++ = static_cast<std::uint32_t>(x >> 32);
+  };
+  for (std::size_t pixel = 0; pixel < samples_.size(); ++pixel) {
+    *out++ = samples_[pixel];
+    for (std::size_t group = 0; group < groups; ++group) {
+      *out++ = static_cast<std::uint32_t>(counts_[group_at(pixel, group)]);
+      *out++ = places_[group_at(pixel, group)];
+      for (const Digits& sum : digits(pixel, group)) {
+        put(static_cast<std::uint64_t>(sum.upper));
+        put(static_cast<std::uint64_t>(sum.lower));
+      }
+    }
+  }
 }
 
 void TileSums::from_words(std::span<const std::uint32_t> words) {
-  take(digits_, words);
-  take(counts_, words);
-  take(places_, words);
-  take(samples_, words);
-  // Whatever the words were, nothing may be looked up outside its table.
-  for (std::uint8_t& place : places_) place = std::min<std::uint8_t>(place, kHighestPlace);
+  assert(words.size() == word_count());
+  const std::size_t groups = first_channel_.size() - 1;
+  const std::uint32_t* in = words.data();
+  const auto take = [&in] {
+    const std::uint64_t low = *in++, high = *in++;
+    return static_cast<std::int64_t>(low | high << 32);
+  };
+  for (std::size_t pixel = 0; pixel < samples_.size(); ++pixel) {
+    samples_[pixel] = *in++;
+    for (std::size_t group = 0; group < groups; ++group) {
+      counts_[group_at(pixel, group)] = static_cast<std::int32_t>(*in++);
+      // Whatever the words were, nothing may be looked up outside its table.
+      places_[group_at(pixel, group)] =
+          static_cast<std::uint8_t>(std::min<std::uint32_t>(*in++, kHighestPlace));
+      for (Digits& sum : digits(pixel, group)) {
+        sum.upper = take();
+        sum.lower = take();
+      }
+    }
+  }
 }
 
 Film::Film(int width, int height, std::vector<int> group_sizes)

@@ -65,8 +65,11 @@ class TileSums {
   std::int32_t count(std::size_t pixel, std::size_t group) const { return counts_[group_at(pixel, group)]; }
   std::uint32_t samples(std::size_t pixel) const { return samples_[pixel]; }
 
-  /// As plain words, for files and other machines; and back. Of the same length for tiles of the same shape.
-  std::size_t word_count() const;
+  /// As plain words, pixel after pixel, for files and other machines; and back.
+  std::size_t words_per_pixel() const {
+    return 1 + 2 * (first_channel_.size() - 1) + sizeof(Digits) / 4 * first_channel_.back();
+  }
+  std::size_t word_count() const { return samples_.size() * words_per_pixel(); }
   void to_words(std::span<std::uint32_t> words) const;
   void from_words(std::span<const std::uint32_t> words);
 

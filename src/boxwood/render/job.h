@@ -67,9 +67,9 @@ class RenderJob {
   };
   State state() const;
   const Film& film() const { return film_; }
-  /// Goes on from there; before run().
+  /// Goes on from there, with the film filled as it was; before run().
   void restore(const State& state);
-  Film& film_to_restore() { return film_; }
+  Film& film() { return film_; }
 
  private:
   bool begin_next_round();

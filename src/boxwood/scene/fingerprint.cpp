@@ -1,0 +1,157 @@
+#include "boxwood/scene/fingerprint.h"
+
+#include <cstring>
+#include <type_traits>
+
+namespace boxwood {
+namespace {
+
+/// Stirs words into one: a multiplication carries each bit upwards, a shift brings the upper ones back.
+class Stirrer {
+ public:
+  void bytes(const void* data, std::size_t size) {
+    const char* at = static_cast<const char*>(data);
+    for (; size >= 8; at += 8, size -= 8) {
+      std::uint64_t word;
+      std::memcpy(&word, at, 8);
+      stir(word);
+    }
+    std::uint64_t rest = 0;
+    std::memcpy(&rest, at, size);
+    stir(rest ^ static_cast<std::uint64_t>(size) << 56);
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  void stir(std::uint64_t word) {
+    state_ = (state_ ^ word) * 0x9e3779b97f4a7c15u;
+    state_ ^= state_ >> 29;
+  }
+  std::uint64_t state_ = 0x243f6a8885a308d3u;
+};
+
+/// Types whose bytes are all value: no padding, no pointers.
+template <class T>
+inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <>
+inline constexpr bool is_plain<Vec2> = true;
+template <>
+inline constexpr bool is_plain<Vec3> = true;
+template <>
+inline constexpr bool is_plain<Affine3> = true;
+template <>
+inline constexpr bool is_plain<Sphere> = true;
+template <>
+inline constexpr bool is_plain<Quad> = true;
+template <>
+inline constexpr bool is_plain<Cuboid> = true;
+template <>
+inline constexpr bool is_plain<Disk> = true;
+template <>
+inline constexpr bool is_plain<Box3> = true;
+template <class Tag>
+inline constexpr bool is_plain<Id<Tag>> = true;
+template <class T, std::size_t n>
+inline constexpr bool is_plain<std::array<T, n>> = is_plain<T>;
+
+template <class T>
+requires is_plain<T>
+void add(Stirrer& stirrer, const T& value) {
+  stirrer.bytes(&value, sizeof(T));
+}
+
+// Each of these names all members of its type, and does not compile when one is added:
+// whoever adds one decides here whether it can be seen.
+void add(Stirrer& stirrer, const AnyShape& shape);
+void add(Stirrer& stirrer, const TriangleMesh& mesh);
+void add(Stirrer& stirrer, const Geometry& geometry);
+void add(Stirrer& stirrer, const Instance& instance);
+void add(Stirrer& stirrer, const Texture& texture);
+void add(Stirrer& stirrer, const Material& material);
+void add(Stirrer& stirrer, const Camera& camera);
+void add(Stirrer& stirrer, const Sky& sky);
+void add(Stirrer& stirrer, const PointLight& light);
+void add(Stirrer& stirrer, const DistantLight& light);
+
+template <class T>
+void add(Stirrer& stirrer, const std::vector<T>& values) {
+  add(stirrer, values.size());
+  if constexpr (is_plain<T>) {
+    stirrer.bytes(values.data(), values.size() * sizeof(T));
+  } else {
+    for (const T& value : values) add(stirrer, value);
+  }
+}
+
+template <class T>
+void add(Stirrer& stirrer, const std::optional<T>& value) {
+  add(stirrer, value.has_value());
+  if (value) add(stirrer, *value);
+}
+
+template <class... T>
+void add_all(Stirrer& stirrer, const T&... values) {
+  (add(stirrer, values), ...);
+}
+
+void add(Stirrer& stirrer, const AnyShape& shape) {
+  add(stirrer, shape.box());
+}
+
+void add(Stirrer& stirrer, const TriangleMesh& mesh) {
+  const auto& [positions, indices, normals, uvs] = mesh;
+  add_all(stirrer, positions, indices, normals, uvs);
+}
+
+void add(Stirrer& stirrer, const Geometry& geometry) {
+  const auto& [shapes, material, materials, name] = geometry;
+  add_all(stirrer, shapes.index(), material, materials);
+  std::visit([&stirrer](const auto& some) { add(stirrer, some); }, shapes);
+}
+
+void add(Stirrer& stirrer, const Instance& instance) {
+  const auto& [geometry, world_from_object, material] = instance;
+  add_all(stirrer, geometry, world_from_object, material);
+}
+
+void add(Stirrer& stirrer, const Texture& texture) {
+  const auto& [name, width, height, texels, is_srgb] = texture;
+  add_all(stirrer, width, height, texels, is_srgb);
+}
+
+void add(Stirrer& stirrer, const Material& material) {
+  const auto& [name, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides] = material;
+  add_all(stirrer, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides);
+}
+
+void add(Stirrer& stirrer, const Camera& camera) {
+  const auto& [world_from_camera, fov_deg, lens_radius, focus_distance, width, height] = camera;
+  add_all(stirrer, world_from_camera, fov_deg, lens_radius, focus_distance);
+}
+
+void add(Stirrer& stirrer, const Sky& sky) {
+  const auto& [zenith, horizon, ground, up, sun_direction, sun_radiance, sun_angle_deg] = sky;
+  add_all(stirrer, zenith, horizon, ground, up, sun_direction, sun_radiance, sun_angle_deg);
+}
+
+void add(Stirrer& stirrer, const PointLight& light) {
+  const auto& [position, intensity] = light;
+  add_all(stirrer, position, intensity);
+}
+
+void add(Stirrer& stirrer, const DistantLight& light) {
+  const auto& [direction, irradiance] = light;
+  add_all(stirrer, direction, irradiance);
+}
+
+}  // namespace
+
+std::uint64_t fingerprint(const SceneDesc& desc) {
+  Stirrer stirrer;
+  const auto& [geometries, instances, materials, textures, point_lights, distant_lights, camera, sky, name,
+               warnings] = desc;
+  add_all(stirrer, geometries, instances, materials, textures, point_lights, distant_lights, camera, sky);
+  return stirrer.value();
+}
+
+}  // namespace boxwood
