@@ -36,7 +36,7 @@ struct Sum {
 };
 
 TEST(ExactSum, IsTheSameInAnyOrderAndAnyGrouping) {
-  for (const auto [low, high] :
+  for (const auto& [low, high] :
        {std::pair(-149, 128), std::pair(-30, 30), std::pair(-149, -120), std::pair(100, 128)}) {
     std::vector<float> values = wild_floats(3000, 7, low, high);
     Sum expected;
@@ -58,7 +58,7 @@ TEST(ExactSum, IsTheSameInAnyOrderAndAnyGrouping) {
 }
 
 TEST(ExactSum, IsAsCloseAsItSays) {
-  for (const auto [low, high] :
+  for (const auto& [low, high] :
        {std::pair(-149, 128), std::pair(-4, 4), std::pair(-20, 20), std::pair(-149, -126)}) {
     const std::vector<float> values = wild_floats(1000, 11, low, high);
     Sum sum;
