@@ -12,6 +12,7 @@
 #include "boxwood/render/shard.h"
 #include "boxwood/scene/scene.h"
 #include "checkpoint_file.h"
+#include "cluster.h"
 #include "commands.h"
 #include "console.h"
 #include "interrupt.h"
@@ -100,6 +101,20 @@ void write_outputs_or_checkpoint(const RenderArguments& arguments, const render:
   }
 }
 
+/// What the other ranks of a cluster do. What keeps one from it, the leader says.
+void help_leader(const RenderArguments& arguments, render::RenderOptions& options, Cluster& cluster) {
+  std::optional<Scene> scene;
+  std::optional<render::RenderJob> job;
+  try {
+    ProgressBar bar(true);
+    scene.emplace(open_and_build(arguments, options, bar));
+    job.emplace(*scene, options);
+  } catch (const std::exception& error) {
+    return cluster.cannot_help(error.what());
+  }
+  cluster.help(*job);
+}
+
 std::string summary(const render::RenderResult& result, const render::RenderOptions& options) {
   std::string text = fmt::format("{}x{}, {}, {:.4g} samples", options.width, options.height,
                                  render::mode_name(options.mode), result.samples);
@@ -112,14 +127,18 @@ void render_command(const RenderArguments& arguments) {
   check_together(arguments);
   render::RenderOptions options = options_from(arguments);
 
-  // Find out what cannot work before any work is done.
   render::check(options);
-  for (const std::string& output : arguments.outputs) check_writable(output);
-  if (!arguments.preview.empty()) check_writable(arguments.preview);
-
   catch_interrupts();
   const std::unique_ptr<Executor> executor = make_executor(arguments.threads);
   options.executor = executor.get();
+  std::optional<Cluster> cluster;
+  if (is_in_cluster()) cluster.emplace();
+  if (cluster && !cluster->is_leader()) return help_leader(arguments, options, *cluster);
+
+  // Find out what cannot work before any work is done.
+  for (const std::string& output : arguments.outputs) check_writable(output);
+  if (!arguments.preview.empty()) check_writable(arguments.preview);
+
   ProgressBar bar(arguments.is_quiet);
   const Scene scene = open_and_build(arguments, options, bar);
 
@@ -132,7 +151,13 @@ void render_command(const RenderArguments& arguments) {
   watch.emplace(
       job, bar, checkpoint,
       WatchOptions{arguments.seconds, arguments.checkpoint_seconds, arguments.preview, arguments.look});
-  const render::RenderResult result = job.run();
+  const render::RenderResult result =
+      cluster ? job.run(cluster->crew(job,
+                                      [&bar](const std::string& problem) {
+                                        bar.clear();
+                                        print_error("boxwood: warning: {}\n", problem);
+                                      }))
+              : job.run();
   const double seconds = watch->elapsed();
   bar.clear();
 

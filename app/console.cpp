@@ -1,6 +1,7 @@
 #include "console.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,11 @@ void open_closed_streams() {
   // open() takes the lowest free number, which is the closed one: those below it are open by now.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) == -1) (void)open("/dev/null", O_RDWR);
+}
+
+bool is_heard() {
+  static const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  return !rank || std::strcmp(rank, "0") == 0;
 }
 
 void check_output_arrived() {

@@ -19,9 +19,13 @@ void open_closed_streams();
 /// Throws std::runtime_error when something that was printed to stdout did not arrive.
 void check_output_arrived();
 
-/// Prints to stderr; nothing happens when that fails.
+/// Whether this program talks for itself: of those that mpirun starts together, only rank 0 does.
+bool is_heard();
+
+/// Prints to stderr; nothing happens when that fails, or when nobody is to hear it.
 template <class... Args>
 void print_error(fmt::format_string<Args...> format, Args&&... args) {
+  if (!is_heard()) return;
   std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
 }
 

@@ -17,13 +17,14 @@ namespace {
 
 constexpr int kFailed = 1, kWrongUsage = 2;
 
-/// Messages of libraries may have line breaks; ours are one line.
+/// Messages of libraries may have line breaks; ours are one line. Who is not heard did not fail either: else
+/// mpirun might end rank 0 before it has said what is wrong.
 int complain(std::string message, int exit_code) {
   while (!message.empty() && message.back() == '\n') message.pop_back();
   for (char& c : message)
     if (c == '\n' || c == '\r') c = ' ';
   boxwood::app::print_error("boxwood: {}\n", message);
-  return exit_code;
+  return boxwood::app::is_heard() ? exit_code : 0;
 }
 
 /// The first argument when it names no command, for a message that says so; else empty.

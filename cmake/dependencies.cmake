@@ -24,6 +24,11 @@ if(BOXWOOD_BUILD_APP)
   boxwood_require(fmt libfmt-dev)
   boxwood_require(nlohmann_json nlohmann-json3-dev)
 endif()
+if(BOXWOOD_BUILD_APP)
+  # Renders shared among machines (mpirun); absent is fine. The C interface alone.
+  set(MPI_CXX_SKIP_MPICXX ON)
+  find_package(MPI QUIET COMPONENTS CXX)
+endif()
 if(BOXWOOD_BUILD_APP OR BOXWOOD_BUILD_TESTS)
   find_package(embree 3 QUIET)     # only a peer to measure against and to compare with; absent is fine
 endif()

@@ -2,7 +2,7 @@
 """run_tests.py: did every test pass, and how many were there?
 
 Runs ctest in a build folder and adds up what the GoogleTest programs said. A test may be skipped only for want of
-the models (the variable BOXWOOD_MODELS), and none may be disabled: anything else counts as a failure.
+the models (the variable BOXWOOD_MODELS) or of Open MPI, and none may be disabled: anything else counts as a failure.
 
 Usage: run_tests.py BUILD_FOLDER [ctest options]
 """
@@ -32,19 +32,20 @@ def main():
     skipped = count(r"^\[  SKIPPED \] (\d+) tests?[.,]")
     disabled = count(r"YOU HAVE (\d+) DISABLED TEST")
     for_models = len(re.findall(r": Skipped\n.*BOXWOOD_MODELS", log))
+    for_mpi = len(re.findall(r": Skipped\nOpen MPI is not installed", log))
 
     # Judge them.
-    unexcused = skipped if os.environ.get("BOXWOOD_MODELS") else skipped - for_models
+    unexcused = skipped - for_mpi - (0 if os.environ.get("BOXWOOD_MODELS") else for_models)
     problems = []
     if unexcused > 0:
-        problems.append(f"{unexcused} tests were skipped for a reason other than missing models")
+        problems.append(f"{unexcused} tests were skipped for a reason other than missing models or Open MPI")
     if disabled:
         problems.append(f"{disabled} tests are disabled")
 
     # Say it in the words of GoogleTest and ctest.
     print(f"\nGoogleTest, all programs together:\n[  PASSED  ] {passed} tests.")
     if skipped:
-        print(f"[  SKIPPED ] {skipped} tests. (Set BOXWOOD_MODELS to the folder of the models to run them.)")
+        print(f"[  SKIPPED ] {skipped} tests. (Set BOXWOOD_MODELS to the folder of the models, and install Open MPI.)")
     if failed:
         print(f"[  FAILED  ] {failed} tests.")
     for problem in problems:

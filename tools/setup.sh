@@ -22,6 +22,8 @@ libtinyobjloader-dev  OBJ files
 nlohmann-json3-dev    --json
 libcli11-dev          the command line
 libfmt-dev            text on the terminal
+libopenmpi-dev        Open MPI: renders shared among machines
+openmpi-bin           mpirun, which starts them
 libgtest-dev          GoogleTest: the tests
 libbenchmark-dev      Google Benchmark: make microbench
 libembree-dev         Embree, a peer to compare with in tests and in boxwood bench

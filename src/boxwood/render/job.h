@@ -66,6 +66,8 @@ class RenderJob {
     std::optional<double> noise;
   };
   State state() const;
+  /// The present round. Steady during a round.
+  const Round& round() const { return round_; }
   const Film& film() const { return film_; }
   /// Goes on from there, with the film filled as it was; before run().
   void restore(const State& state);

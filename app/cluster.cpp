@@ -1,0 +1,283 @@
+#include "cluster.h"
+
+#include <cstdlib>
+#include <stdexcept>
+
+#ifdef BOXWOOD_HAS_MPI
+
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#define OMPI_SKIP_MPICXX 1
+#include <mpi.h>
+
+#include "boxwood/render/checkpoint.h"
+#include "boxwood/render/shard.h"
+
+namespace boxwood::app {
+namespace {
+
+using render::RenderJob;
+using render::Task;
+
+/// What messages are about. The leader sends tasks and quit, the others all else.
+enum Tag { kHello = 1, kTasks, kResult, kQuit, kBye };
+
+/// How a rank introduces itself; the facts of its job follow, or what keeps it from working.
+struct Hello {
+  std::int32_t threads;  // 0: it cannot help
+};
+
+/// What a task brought; the words of its sums follow.
+struct ResultHead {
+  Task task;
+  std::uint64_t rays, dropped;
+};
+
+template <class T>
+void append(std::vector<char>& bytes, const T* values, std::size_t count) {
+  const char* first = reinterpret_cast<const char*>(values);
+  bytes.insert(bytes.end(), first, first + count * sizeof(T));
+}
+
+void send(int rank, Tag tag, const std::vector<char>& bytes = {}) {
+  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD);
+}
+
+struct Message {
+  int rank, tag;
+  std::vector<char> bytes;
+};
+
+/// The next message, if one has arrived.
+bool receive(Message& message) {
+  int is_there = 0, size = 0;
+  MPI_Status status;
+  MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &is_there, &status);
+  if (!is_there) return false;
+  MPI_Get_count(&status, MPI_BYTE, &size);
+  message = {status.MPI_SOURCE, status.MPI_TAG, std::vector<char>(static_cast<std::size_t>(size))};
+  MPI_Recv(message.bytes.data(), size, MPI_BYTE, message.rank, message.tag, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  return true;
+}
+
+/// The same, but waits for one, and leaves the processor to others meanwhile, as MPI_Probe would not.
+Message wait_for_message() {
+  Message message;
+  while (!receive(message)) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  return message;
+}
+
+Executor& executor_of(const RenderJob& job) {
+  return job.options().executor ? *job.options().executor : default_executor();
+}
+
+std::vector<char> packed(const Task& task, const render::UnitResult& result) {
+  const ResultHead head{task, result.rays, result.dropped};
+  std::vector<std::uint32_t> words(result.sums.word_count());
+  result.sums.to_words(words);
+  std::vector<char> bytes;
+  append(bytes, &head, 1);
+  append(bytes, words.data(), words.size());
+  return bytes;
+}
+
+/// Hands in what another rank rendered, unless it belongs to a round that is over.
+void hand_in(RenderJob& job, const std::vector<char>& bytes) {
+  ResultHead head;
+  std::memcpy(&head, bytes.data(), sizeof(head));
+  const render::Round& round = job.round();
+  if (head.task.index >= round.unit_count() ||
+      round.unit(head.task.unit.tile, head.task.index).first != head.task.unit.first)
+    return;
+  render::UnitResult result{job.film().empty_tile(head.task.unit.tile), head.rays, head.dropped};
+  std::vector<std::uint32_t> words(result.sums.word_count());
+  std::memcpy(words.data(), bytes.data() + sizeof(head), words.size() * 4);
+  result.sums.from_words(words);
+  job.add(head.task, result);
+}
+
+}  // namespace
+
+struct Cluster::State {
+  /// What the leader knows of another rank.
+  struct Helper {
+    int threads = 0;    // 0: it has not said hello, or cannot help
+    int busy_with = 0;  // tasks
+  };
+
+  int rank = 0, size = 1;
+  std::vector<Helper> helpers;  // by rank; the leader's own is not used
+  render::Facts facts;          // of the leader's job
+  std::function<void(const std::string&)> warn;
+
+  /// What the leader does with whatever has arrived.
+  void serve(RenderJob& job) {
+    Message message;
+    while (receive(message)) {
+      if (message.tag == kHello) greet(message);
+      if (message.tag != kResult) continue;
+      --helpers[static_cast<std::size_t>(message.rank)].busy_with;
+      hand_in(job, message.bytes);
+    }
+  }
+
+  void greet(const Message& message) {
+    Hello hello;
+    std::memcpy(&hello, message.bytes.data(), sizeof(hello));
+    const std::string text(message.bytes.begin() + sizeof(hello), message.bytes.end());
+    const std::string difference =
+        hello.threads > 0 ? first_difference(render::facts_from(text), facts) : text;
+    if (difference.empty())
+      helpers[static_cast<std::size_t>(message.rank)].threads = hello.threads;
+    else
+      warn("rank " + std::to_string(message.rank) + " cannot help: " + difference);
+  }
+};
+
+bool is_in_cluster() {
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  return size && std::atoi(size) > 1;
+}
+
+Cluster::Cluster() : state_(std::make_unique<State>()) {
+  int provided = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &state_->rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &state_->size);
+  state_->helpers.resize(static_cast<std::size_t>(state_->size));
+}
+
+Cluster::~Cluster() {
+  if (is_leader()) {
+    // Results that are still on their way are of no use, but whoever sends one waits until it is taken.
+    for (int rank = 1; rank < state_->size; ++rank) send(rank, kQuit);
+    for (int left = state_->size - 1; left > 0;) {
+      const Message message = wait_for_message();
+      if (message.tag == kHello && state_->warn) state_->greet(message);
+      left -= message.tag == kBye ? 1 : 0;
+    }
+  }
+  MPI_Finalize();
+}
+
+bool Cluster::is_leader() const {
+  return state_->rank == 0;
+}
+
+int Cluster::size() const {
+  return state_->size;
+}
+
+RenderJob::Crew Cluster::crew(const RenderJob& job, std::function<void(const std::string&)> warn) {
+  state_->facts = render::facts_of(job);
+  state_->warn = std::move(warn);
+  return [this](RenderJob& led, std::span<const Task> tasks) {
+    // Tasks in order; when all are given out, those again that nobody has brought yet.
+    std::size_t next = 0;
+    const auto take = [&](std::size_t most) {
+      std::vector<Task> taken;
+      for (std::size_t looked = 0; looked < tasks.size() && taken.size() < most; ++looked, ++next) {
+        const Task& task = tasks[next % tasks.size()];
+        if (!led.film().has(task.unit.tile, task.index)) taken.push_back(task);
+      }
+      return taken;
+    };
+
+    Executor& executor = executor_of(led);
+    while (!led.is_stopped()) {
+      state_->serve(led);
+      // Each helper has a second task for each thread waiting, so that none waits for us.
+      for (int rank = 1; rank < state_->size; ++rank) {
+        State::Helper& helper = state_->helpers[static_cast<std::size_t>(rank)];
+        if (helper.busy_with > helper.threads || helper.threads == 0) continue;
+        // What others are at already is only for those who have nothing else to do.
+        if (next >= tasks.size() && helper.busy_with > 0) continue;
+        const std::vector<Task> taken = take(static_cast<std::size_t>(helper.threads));
+        if (taken.empty()) return;
+        std::vector<char> bytes;
+        append(bytes, taken.data(), taken.size());
+        send(rank, kTasks, bytes);
+        helper.busy_with += static_cast<int>(taken.size());
+      }
+      const std::vector<Task> own = take(static_cast<std::size_t>(executor.concurrency()));
+      if (own.empty()) return;
+      parallel_for(executor, 0, own.size(), 1,
+                   [&](std::size_t i) { led.add(own[i], led.render(own[i].unit)); });
+    }
+  };
+}
+
+void Cluster::help(const RenderJob& job) {
+  Executor& executor = executor_of(job);
+  const Hello hello{executor.concurrency()};
+  const std::string facts = render::text_of(render::facts_of(job));
+  std::vector<char> greeting;
+  append(greeting, &hello, 1);
+  append(greeting, facts.data(), facts.size());
+  send(0, kHello, greeting);
+
+  for (Message message = wait_for_message(); message.tag != kQuit; message = wait_for_message()) {
+    std::vector<Task> tasks(message.bytes.size() / sizeof(Task));
+    std::memcpy(tasks.data(), message.bytes.data(), tasks.size() * sizeof(Task));
+    std::vector<std::vector<char>> results(tasks.size());
+    parallel_for(executor, 0, tasks.size(), 1,
+                 [&](std::size_t i) { results[i] = packed(tasks[i], job.render(tasks[i].unit)); });
+    for (const std::vector<char>& result : results) send(0, kResult, result);
+  }
+  send(0, kBye);
+}
+
+void Cluster::cannot_help(const std::string& why) {
+  const Hello hello{0};
+  std::vector<char> greeting;
+  append(greeting, &hello, 1);
+  append(greeting, why.data(), why.size());
+  send(0, kHello, greeting);
+  while (wait_for_message().tag != kQuit) {
+  }
+  send(0, kBye);
+}
+
+}  // namespace boxwood::app
+
+#else
+
+namespace boxwood::app {
+
+struct Cluster::State {};
+
+bool is_in_cluster() {
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  return size && std::atoi(size) > 1;
+}
+
+Cluster::Cluster() {
+  throw std::runtime_error(
+      "mpirun started several of this program, but it was built without Open MPI and they could not share "
+      "the work (Debian: libopenmpi-dev)");
+}
+
+Cluster::~Cluster() = default;
+
+bool Cluster::is_leader() const {
+  return true;
+}
+
+int Cluster::size() const {
+  return 1;
+}
+
+render::RenderJob::Crew Cluster::crew(const render::RenderJob&, std::function<void(const std::string&)>) {
+  return {};
+}
+
+void Cluster::help(const render::RenderJob&) {}
+
+void Cluster::cannot_help(const std::string&) {}
+
+}  // namespace boxwood::app
+
+#endif
