@@ -26,6 +26,14 @@ const char* kind_of(const Material& material) {
       return "glass";
     case Material::Kind::plastic:
       return "plastic";
+    case Material::Kind::translucent:
+      return "translucent";
+    case Material::Kind::layered:
+      return "layered";
+    case Material::Kind::mix:
+      return "mix";
+    case Material::Kind::clear:
+      return "clear";
   }
   return "unknown";
 }

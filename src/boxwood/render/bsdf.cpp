@@ -1,100 +1,164 @@
 #include "boxwood/render/bsdf.h"
 
 #include "boxwood/render/fresnel.h"
-#include "boxwood/render/ggx.h"
+#include "boxwood/render/sheen.h"
 
 namespace boxwood::render {
 namespace {
 
-/// Below this roughness a lobe is so narrow that single precision cannot hold it apart from a mirror.
-constexpr float kSmoothAlpha = 0.001f;
+using Kind = Material::Kind;
+
+constexpr float kCoatIor = 1.5f;
 
 Vec3 mirror(Vec3 v, Vec3 normal) {
   return normal * (2 * dot(v, normal)) - v;
 }
 
-}  // namespace
-
-PreparedMaterial::PreparedMaterial(const Material& material)
-    : kind(material.kind),
-      alpha(material.roughness >= kSmoothAlpha ? min(material.roughness, 1.0f) : 0),
-      ior(material.ior >= 1 && material.ior < 10 ? material.ior : 1.5f),
-      internal_reflectance(kind == Material::Kind::plastic ? internal_diffuse_reflectance(ior) : 0) {
-  if (kind == Material::Kind::mirror || kind == Material::Kind::glass) alpha = 0;
+float schlick(float cosine) {
+  const float x = min(max(0.0f, 1 - cosine), 1.0f), x2 = x * x;
+  return x2 * x2 * x;
 }
 
-Bsdf::Bsdf(const PreparedMaterial& material, Vec3 color, const Surface& surface, Vec3 outgoing)
-    : material_(material), color_(color), outgoing_world_(outgoing) {
+}  // namespace
+
+Bsdf::Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing)
+    : look_(look), outgoing_world_(outgoing), alpha_(look.alpha) {
   // Turn both normals to the viewer. Where an interpolated normal looks away from the viewer all the same, it
   // has gone too far.
   is_inside_ = dot(surface.normal, outgoing) < 0;
   geometric_ = is_inside_ ? -surface.normal : surface.normal;
-  z_ = is_inside_ ? -surface.shading_normal : surface.shading_normal;
+  z_ = is_inside_ ? -normal : normal;
   if (!(dot(z_, outgoing) > 1e-3f)) z_ = geometric_;
   orthonormal_basis(z_, x_, y_);
-  outgoing_ = {dot(x_, outgoing), dot(y_, outgoing), max(dot(z_, outgoing), 1e-5f)};
+  outgoing_ = {dot(x_, outgoing), dot(y_, outgoing), min(max(dot(z_, outgoing), 1e-5f), 1.0f)};
+  eta_ = is_inside_ && !look.is_thin ? 1 / look.ior : look.ior;
 
-  if (material_.kind == Material::Kind::glass)
-    reflected_ = fresnel_dielectric(min(outgoing_.z, 1.0f), is_inside_ ? 1 / material_.ior : material_.ior);
-  if (material_.kind == Material::Kind::plastic)
-    reflected_ = fresnel_dielectric(min(outgoing_.z, 1.0f), material_.ior);
+  set_shares();
+  set_chances();
+  for (int lobe = 0; lobe < kLobes; ++lobe)
+    if (chance_[lobe] > 0 && !is_perfect(Lobe(lobe))) {
+      has_spread_ = true;
+      spreads_behind_ |= lobe == through || lobe == glass;
+    }
 }
 
-bool Bsdf::has_spread() const {
-  switch (material_.kind) {
-    case Material::Kind::mirror:
-    case Material::Kind::glass:
-      return false;
-    case Material::Kind::metal:
-      return material_.alpha > 0;
-    default:
-      return true;
-  }
-}
-
-BsdfValue Bsdf::evaluate(Vec3 incoming) const {
-  // Opaque: nothing comes through the true surface, whatever the interpolated normal says.
-  if (!(dot(incoming, geometric_) > 0)) return {};
-  return evaluate_local({dot(x_, incoming), dot(y_, incoming), dot(z_, incoming)});
-}
-
-std::optional<BsdfSample> Bsdf::sample(float choice, Vec2 u) const {
-  switch (material_.kind) {
-    case Material::Kind::mirror:
-      return sample_mirror(color_);
-    case Material::Kind::glass:
-      return sample_glass(choice);
-    case Material::Kind::metal:
-      if (material_.alpha > 0) return sample_spread(choice, u);
-      return sample_mirror(fresnel_metal(outgoing_.z, color_));
-    case Material::Kind::plastic:
-      if (material_.alpha == 0) {
-        // Draw the perfect coat or the base below it.
-        const float p = coat_probability();
-        if (choice < p) return sample_mirror(splat(reflected_ / p));
-      }
-      return sample_spread(choice, u);
-    case Material::Kind::matte:
+void Bsdf::set_shares() {
+  // How much of the surface is what.
+  diffuse_ = look_.color;
+  switch (look_.kind) {
+    case Kind::matte:
+    case Kind::mix:
+    case Kind::clear:
+      share_[diffuse] = 1;
       break;
+    case Kind::translucent:
+      share_[diffuse] = share_[through] = 1;
+      break;
+    case Kind::metal:
+    case Kind::mirror:
+      share_[metal] = 1;
+      break;
+    case Kind::glass:
+      share_[glass] = 1;
+      break;
+    case Kind::plastic: {
+      share_[diffuse] = share_[specular] = boundary_ = 1;
+      // Below the boundary light is reflected back down again and again until it passes, a geometric series
+      // (Saunderson, "Calculation of the Color of Pigmented Plastics", 1942).
+      const float mean =
+          alpha_ > 0 ? look_.prepared->coat_over_base->mean(alpha_) : look_.prepared->fresnel_mean;
+      const float leaves = (1 - mean) / (look_.ior * look_.ior);
+      diffuse_ = look_.color * leaves / (splat(1) - look_.color * (1 - leaves));
+      break;
+    }
+    case Kind::layered: {
+      share_[metal] = look_.metalness;
+      share_[glass] = (1 - look_.metalness) * look_.transmission;
+      share_[diffuse] = share_[specular] = (1 - look_.metalness) * (1 - look_.transmission);
+      boundary_ = look_.specular;
+      // Each layer takes its part of what comes from above.
+      float below = 1;
+      if (look_.coat > 0) {
+        share_[coat] = look_.coat;
+        below -= look_.coat * coat_albedo(outgoing_.z);
+      }
+      if (look_.prepared->sheen) {
+        share_[sheen] = below;
+        below *= 1 - min(1.0f, max_component(look_.sheen_color) *
+                                   look_.prepared->sheen->at(look_.sheen_alpha, outgoing_.z));
+      }
+      for (const Lobe lobe : {metal, specular, diffuse, glass}) share_[lobe] *= below;
+      break;
+    }
   }
-  return sample_spread(choice, u);
+  if (share_[metal] > 0 && alpha_ > 0)
+    multiple_ = max(0.0f, 1 - look_.prepared->reflection->at(alpha_, outgoing_.z));
 }
 
-/// How often sample() draws the coat of plastic: in proportion to the light that takes that way, roughly.
-float Bsdf::coat_probability() const {
-  const float below = (1 - reflected_) * max_component(color_);
-  return below > 0 ? reflected_ / (reflected_ + below) : 1;
+/// Lobes are drawn in proportion to the light that takes that way, roughly.
+void Bsdf::set_chances() {
+  const float z = outgoing_.z, reflected = boundary_ > 0 ? boundary_ * boundary_albedo(z) : 0;
+  chance_[coat] = share_[coat] > 0 ? share_[coat] * coat_albedo(z) : 0;
+  if (share_[sheen] > 0)
+    chance_[sheen] =
+        share_[sheen] * max_component(look_.sheen_color) * look_.prepared->sheen->at(look_.sheen_alpha, z);
+  if (share_[metal] > 0) chance_[metal] = share_[metal] * max_component(metal_fresnel(z));
+  chance_[specular] = share_[specular] * reflected;
+  chance_[diffuse] = share_[diffuse] * (1 - reflected) * max_component(diffuse_);
+  chance_[through] = share_[through] * max_component(look_.transmission_color);
+  if (share_[glass] > 0) {
+    const float f = glass_reflectance(z);
+    chance_[glass] =
+        share_[glass] * (f * max_component(look_.reflection_color) + (1 - f) * max_component(look_.color));
+  }
+  float sum = 0;
+  for (const float chance : chance_) sum += chance;
+  if (sum > 0)
+    for (float& chance : chance_) chance /= sum;
 }
 
-/// Lambert's law; below the coat of plastic, light is reflected back down again and again until it passes the
-/// boundary, a geometric series (Saunderson, "Calculation of the Color of Pigmented Plastics", 1942). With
-/// the cosine.
-Vec3 Bsdf::diffuse(Vec3 incoming) const {
-  const float lambert = incoming.z / kPi;
-  if (material_.kind == Material::Kind::matte) return color_ * (lambert * shadow_softening(incoming));
-  const float passes = (1 - reflected_) * (1 - fresnel_dielectric(min(incoming.z, 1.0f), material_.ior));
-  const Vec3 series = color_ / (splat(1) - color_ * material_.internal_reflectance);
-  return series * (lambert * passes / (material_.ior * material_.ior));
+bool Bsdf::is_perfect(Lobe lobe) const {
+  switch (lobe) {
+    case coat:
+      return look_.coat_alpha == 0;
+    case metal:
+    case specular:
+    case glass:
+      return alpha_ == 0;
+    default:
+      return false;
+  }
+}
+
+Vec3 Bsdf::metal_fresnel(float cosine) const {
+  if (look_.kind == Kind::mirror) return look_.color;
+  if (!(max_component(look_.metal_k) > 0)) return fresnel_metal(cosine, look_.color);
+  return look_.color * Vec3{fresnel_conductor(cosine, look_.metal_eta.x, look_.metal_k.x),
+                            fresnel_conductor(cosine, look_.metal_eta.y, look_.metal_k.y),
+                            fresnel_conductor(cosine, look_.metal_eta.z, look_.metal_k.z)};
+}
+
+Vec3 Bsdf::specular_fresnel(float cosine) const {
+  const Vec3 tint = min(look_.kind == Kind::layered ? look_.specular_color : splat(1), splat(1));
+  return (tint + (splat(1) - tint) * schlick(cosine)) *
+         (boundary_ * fresnel_dielectric(min(cosine, 1.0f), look_.ior));
+}
+
+/// What the clear boundary over the matte base reflects in all, of light at this cosine.
+float Bsdf::boundary_albedo(float cosine) const {
+  return alpha_ > 0 ? look_.prepared->coat_over_base->at(alpha_, cosine)
+                    : fresnel_dielectric(min(cosine, 1.0f), look_.ior);
+}
+
+float Bsdf::coat_albedo(float cosine) const {
+  return look_.coat_alpha > 0 ? look_.prepared->clear_coat->at(look_.coat_alpha, cosine)
+                              : fresnel_dielectric(min(cosine, 1.0f), kCoatIor);
+}
+
+float Bsdf::glass_reflectance(float cosine) const {
+  const float f = fresnel_dielectric(min(max(cosine, 0.0f), 1.0f), eta_);
+  // In a pane light goes to and fro between two such boundaries: f + (1-f)^2 f + (1-f)^2 f^3 + ...
+  return look_.is_thin ? 2 * f / (1 + f) : f;
 }
 
 /// Interpolated normals let light fall on faces that point away from it, and the shadow that the faces cast
@@ -103,84 +167,185 @@ Vec3 Bsdf::diffuse(Vec3 incoming) const {
 float Bsdf::shadow_softening(Vec3 incoming) const {
   const float alignment = dot(geometric_, z_);
   if (alignment > 0.99999f) return 1;
-  const Vec3 world = x_ * incoming.x + y_ * incoming.y + z_ * incoming.z;
-  const float g = max(0.0f, dot(geometric_, world)) / (incoming.z * max(alignment, 1e-4f));
+  const float g = max(0.0f, dot(geometric_, to_world(incoming))) / (incoming.z * max(alignment, 1e-4f));
   return g >= 1 ? 1 : g * (1 + g * (1 - g));
 }
 
+BsdfValue Bsdf::evaluate(Vec3 incoming) const {
+  // Nothing comes through the true surface but what is meant to, whatever the interpolated normal says.
+  const Vec3 local{dot(x_, incoming), dot(y_, incoming), dot(z_, incoming)};
+  if ((dot(incoming, geometric_) > 0) != (local.z > 0)) return {};
+  return evaluate_local(local);
+}
+
 BsdfValue Bsdf::evaluate_local(Vec3 incoming) const {
-  if (!(incoming.z > 0)) return {};
-  const float cosine_pdf = incoming.z / kPi;
-
-  // The reflection at rough facets, of metal or of a coat.
-  Vec3 reflection;
-  float reflection_pdf = 0;
-  if (material_.alpha > 0) {
-    const Ggx ggx{material_.alpha};
-    const Vec3 half = normalize(incoming + outgoing_);
-    const float cosine = min(dot(outgoing_, half), 1.0f);
-    const Vec3 fresnel = material_.kind == Material::Kind::metal
-                             ? fresnel_metal(cosine, color_)
-                             : splat(fresnel_dielectric(cosine, material_.ior));
-    reflection = fresnel * ggx.reflection(outgoing_, incoming, half);
-    reflection_pdf = ggx.reflection_pdf(outgoing_, half);
+  BsdfValue sum;
+  for (int lobe = 0; lobe < kLobes; ++lobe) {
+    if (!(chance_[lobe] > 0) || is_perfect(Lobe(lobe))) continue;
+    const Scattered part = evaluate_lobe(Lobe(lobe), incoming);
+    sum.value += part.value * share_[lobe];
+    sum.pdf += part.pdf * chance_[lobe];
   }
+  return sum;
+}
 
-  switch (material_.kind) {
-    case Material::Kind::matte:
-      return {diffuse(incoming), cosine_pdf};
-    case Material::Kind::metal:
-      return {reflection, reflection_pdf};
-    case Material::Kind::plastic: {
-      const float p = coat_probability();
-      return {reflection + diffuse(incoming), p * reflection_pdf + (1 - p) * cosine_pdf};
+Bsdf::Scattered Bsdf::evaluate_lobe(Lobe lobe, Vec3 incoming) const {
+  if (lobe == glass) return evaluate_glass(incoming);
+  if (lobe == through) {
+    if (!(incoming.z < 0)) return {};
+    return {look_.transmission_color * (-incoming.z / kPi), -incoming.z / kPi};
+  }
+  if (!(incoming.z > 0)) return {};
+
+  const float lambert = incoming.z / kPi;
+  switch (lobe) {
+    case diffuse: {
+      if (!(boundary_ > 0)) return {diffuse_ * (lambert * shadow_softening(incoming)), lambert};
+      // What passes the boundary on the way in and on the way out; on average over all ways in, what passes
+      // on the way out alone.
+      const float mean =
+          alpha_ > 0 ? look_.prepared->coat_over_base->mean(alpha_) : look_.prepared->fresnel_mean;
+      const float passes = (1 - boundary_ * boundary_albedo(outgoing_.z)) *
+                           (1 - boundary_ * boundary_albedo(incoming.z)) / (1 - boundary_ * mean);
+      return {diffuse_ * (lambert * passes), lambert};
     }
-    default:
-      return {};
+    case metal:
+      return evaluate_metal(incoming);
+    case sheen:
+      return {look_.sheen_color * sheen_lobe(look_.sheen_alpha, outgoing_, incoming), lambert};
+    default: {
+      const Ggx ggx{lobe == coat ? look_.coat_alpha : alpha_};
+      const Vec3 half = normalize(incoming + outgoing_);
+      const float cosine = min(dot(outgoing_, half), 1.0f);
+      const Vec3 fresnel =
+          lobe == coat ? splat(fresnel_dielectric(cosine, kCoatIor)) : specular_fresnel(cosine);
+      return {fresnel * ggx.reflection(outgoing_, incoming, half), ggx.reflection_pdf(outgoing_, half)};
+    }
   }
 }
 
-std::optional<BsdfSample> Bsdf::sample_spread(float choice, Vec2 u) const {
-  const bool at_facets =
-      material_.alpha > 0 && (material_.kind == Material::Kind::metal || choice < coat_probability());
-  const Vec3 incoming = at_facets
-                            ? mirror(outgoing_, Ggx{material_.alpha}.sample_visible_normal(outgoing_, u))
-                            : cosine_hemisphere(u);
+Bsdf::Scattered Bsdf::evaluate_metal(Vec3 incoming) const {
+  const Ggx ggx{alpha_};
+  const Vec3 half = normalize(incoming + outgoing_);
+  const Vec3 fresnel = metal_fresnel(min(dot(outgoing_, half), 1.0f));
+  // Light that goes on between the facets leaves in all directions alike, less what each bounce takes.
+  const AlbedoTable& table = *look_.prepared->reflection;
+  const float mean = table.mean(alpha_), gone = 1 - mean;
+  const Vec3 flat = metal_fresnel(1), average = flat + (splat(1) - flat) / 21.0f;
+  const Vec3 bounces = average * average * mean / (splat(1) - average * gone);
+  const float lambert = incoming.z / kPi;
+  const float missing = gone > 1e-6f ? multiple_ * max(0.0f, 1 - table.at(alpha_, incoming.z)) / gone : 0;
+  return {fresnel * ggx.reflection(outgoing_, incoming, half) + bounces * (missing * lambert),
+          (1 - multiple_) * ggx.reflection_pdf(outgoing_, half) + multiple_ * lambert};
+}
+
+Bsdf::Scattered Bsdf::evaluate_glass(Vec3 incoming) const {
+  const Ggx ggx{alpha_};
+  const bool is_reflection = incoming.z > 0;
+  const AlbedoTable& table =
+      *(is_inside_ && !look_.is_thin ? look_.prepared->glass_inside : look_.prepared->glass_outside);
+  // What the facets' shadows take is given back by scaling.
+  const float scale = ggx.masking(outgoing_, incoming) / max(table.at(alpha_, outgoing_.z), 0.01f);
+
+  if (is_reflection || look_.is_thin) {
+    // A pane sends light through as if it had been mirrored by the pane.
+    const Vec3 reflected{incoming.x, incoming.y, std::fabs(incoming.z)};
+    const Vec3 half = normalize(reflected + outgoing_);
+    const float f = glass_reflectance(dot(outgoing_, half));
+    const float pdf = (is_reflection ? f : 1 - f) * ggx.reflection_pdf(outgoing_, half);
+    return {(is_reflection ? look_.reflection_color : look_.color) * (pdf * scale), pdf};
+  }
+  // The facet that bends light from one direction into the other: Walter et al. 2007, equations 16 and 17.
+  Vec3 half = normalize(outgoing_ + incoming * eta_);
+  if (half.z < 0) half = -half;
+  const float out = dot(outgoing_, half), in = dot(incoming, half);
+  if (!(out > 0) || !(in < 0)) return {};
+  const float denominator = out + eta_ * in;
+  const float pdf = (1 - glass_reflectance(out)) * ggx.visible_density(outgoing_, half) * eta_ * eta_ * -in /
+                    (denominator * denominator);
+  if (!(pdf < kInfinity)) return {};
+  return {look_.color * (pdf * scale), pdf};
+}
+
+std::optional<BsdfSample> Bsdf::sample(float choice, Vec2 u) const {
+  // Pick a lobe, and stretch what is left of the choice.
+  int lobe = 0, last = -1;
+  for (; lobe < kLobes; ++lobe) {
+    if (!(chance_[lobe] > 0)) continue;
+    last = lobe;
+    if (choice < chance_[lobe]) break;
+    choice -= chance_[lobe];
+  }
+  if (last < 0) return std::nullopt;
+  choice = min(max(choice / chance_[last], 0.0f), 0x1.fffffep-1f);
+  if (is_perfect(Lobe(last))) return sample_perfect(Lobe(last), choice);
+
+  const std::optional<Vec3> incoming = sample_lobe(Lobe(last), choice, u);
+  if (!incoming) return std::nullopt;
   BsdfSample sample;
-  sample.direction = normalize(x_ * incoming.x + y_ * incoming.y + z_ * incoming.z);
-  if (!(dot(sample.direction, geometric_) > 0)) return std::nullopt;
-  const BsdfValue value = evaluate_local(incoming);
+  sample.direction = normalize(to_world(*incoming));
+  sample.is_transmission = incoming->z < 0;
+  if ((dot(sample.direction, geometric_) > 0) == sample.is_transmission) return std::nullopt;
+  const BsdfValue value = evaluate_local(*incoming);
   if (!(value.pdf > 0)) return std::nullopt;
   sample.weight = value.value / value.pdf;
   sample.pdf = value.pdf;
   return sample;
 }
 
-std::optional<BsdfSample> Bsdf::sample_mirror(Vec3 weight) const {
-  BsdfSample sample;
-  sample.direction = mirror(outgoing_world_, z_);
-  // An interpolated normal may send the reflection into the surface; then the face itself is the mirror.
-  if (!(dot(sample.direction, geometric_) > 0)) sample.direction = mirror(outgoing_world_, geometric_);
-  sample.weight = weight;
-  sample.is_perfect = true;
-  return sample;
+/// A direction in the frame of the surface; nothing where the facets send the light into the surface.
+std::optional<Vec3> Bsdf::sample_lobe(Lobe lobe, float choice, Vec2 u) const {
+  switch (lobe) {
+    case diffuse:
+    case sheen:
+      return cosine_hemisphere(u);
+    case through: {
+      const Vec3 up = cosine_hemisphere(u);
+      return Vec3{up.x, up.y, -up.z};
+    }
+    case metal:
+      if (choice < multiple_) return cosine_hemisphere(u);
+      break;
+    default:
+      break;
+  }
+  const Ggx ggx{lobe == coat ? look_.coat_alpha : alpha_};
+  const Vec3 half = ggx.sample_visible_normal(outgoing_, u);
+  const Vec3 reflected = mirror(outgoing_, half);
+  if (lobe != glass || choice < glass_reflectance(dot(outgoing_, half)))
+    return reflected.z > 0 ? std::optional(reflected) : std::nullopt;
+  if (look_.is_thin)
+    return reflected.z > 0 ? std::optional(Vec3{reflected.x, reflected.y, -reflected.z}) : std::nullopt;
+  const Vec3 refracted = refract(outgoing_, half, 1 / eta_);
+  return refracted.z < 0 ? std::optional(refracted) : std::nullopt;
 }
 
-std::optional<BsdfSample> Bsdf::sample_glass(float choice) const {
-  if (choice < reflected_) return sample_mirror({1, 1, 1});
-
-  // Refract by Snell's law. There is a solution: total reflection would have taken the branch above.
-  const float eta = is_inside_ ? material_.ior : 1 / material_.ior;  // this side over the other
-  const auto refract = [&](Vec3 normal) {
-    const float cosine = dot(outgoing_world_, normal);
-    const float other_cosine = std::sqrt(max(0.0f, 1 - eta * eta * (1 - cosine * cosine)));
-    return normalize(normal * (eta * cosine - other_cosine) - outgoing_world_ * eta);
-  };
+std::optional<BsdfSample> Bsdf::sample_perfect(Lobe lobe, float choice) const {
   BsdfSample sample;
-  sample.direction = refract(z_);
-  if (!(dot(sample.direction, geometric_) < 0)) sample.direction = refract(geometric_);
-  sample.weight = color_;
   sample.is_perfect = true;
+  const float factor = share_[lobe] / chance_[lobe];
+  const auto reflect = [&](Vec3 weight) {
+    sample.direction = mirror(outgoing_world_, z_);
+    // An interpolated normal may send the reflection into the surface; then the face itself is the mirror.
+    if (!(dot(sample.direction, geometric_) > 0)) sample.direction = mirror(outgoing_world_, geometric_);
+    sample.weight = weight * factor;
+    return sample;
+  };
+  if (lobe == metal) return reflect(metal_fresnel(outgoing_.z));
+  if (lobe == specular) return reflect(specular_fresnel(outgoing_.z));
+  if (lobe == coat) return reflect(splat(fresnel_dielectric(outgoing_.z, kCoatIor)));
+
+  // Glass: reflected and refracted light in proportion.
+  if (choice < glass_reflectance(outgoing_.z)) return reflect(look_.reflection_color);
+  sample.is_transmission = true;
+  sample.weight = look_.color * factor;
+  if (look_.is_thin) {
+    sample.direction = -outgoing_world_;
+    return sample;
+  }
+  sample.direction = refract(outgoing_world_, z_, 1 / eta_);
+  if (!(dot(sample.direction, geometric_) < 0))
+    sample.direction = refract(outgoing_world_, geometric_, 1 / eta_);
   return sample;
 }
 

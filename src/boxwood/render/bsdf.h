@@ -1,54 +1,56 @@
 // bsdf.h: how does a point of a surface scatter light?
 //
-// One class for all kinds of material. Each is a sum of at most two parts: a perfect one (mirror, glass, a
-// smooth coat), which sends light in single directions and can only be sampled, and a spread one (Lambert,
-// GGX), which can also be evaluated. Laws, held by tests: no more light leaves than arrives; sample() and
-// evaluate() agree.
+// A sum of lobes, each in the share that the Look (material.h) gives it: a coat and a sheen on top; below
+// them metal, glass, or a clear boundary over a matte base. A lobe is perfect (a mirror, smooth glass), sends
+// light in single directions and can only be sampled, or spread, and can also be evaluated. Laws, held by
+// tests: no more light leaves than arrives, and none is lost where theory says so; sample() and evaluate()
+// agree.
+//
+// What lies below a boundary gets what the boundary lets through. Over a matte base both ways count, so that
+// the whole is reciprocal. Under coat and sheen only the way of the viewer does, which keeps the energy of
+// any base but not the symmetry. Metal gets the light back that bounces on between its facets (Kulla and
+// Conty); glass is scaled to lose none (Turquin): see albedo_table.h.
 //
 // Radiance is not scaled by 1 / ior^2 where it enters glass: the factor cancels on every path that leaves the
 // glass again, and leaving it out keeps sheets of glass that are modelled as one surface from shining.
 #pragma once
 
+#include <array>
 #include <optional>
 
+#include "boxwood/render/material.h"
 #include "boxwood/scene/surface.h"
 
 namespace boxwood::render {
 
 /// A direction that light may come from.
 struct BsdfSample {
-  Vec3 direction;           ///< Away from the surface; unit length, world space.
-  Vec3 weight;              ///< BSDF * cosine / density.
-  float pdf = 0;            ///< Per solid angle; has no meaning when is_perfect.
-  bool is_perfect = false;  ///< From the part that no other sampling can find.
+  Vec3 direction;                ///< Unit length, world space.
+  Vec3 weight;                   ///< BSDF * cosine / density.
+  float pdf = 0;                 ///< Per solid angle; has no meaning when is_perfect.
+  bool is_perfect = false;       ///< From a lobe that no other sampling can find.
+  bool is_transmission = false;  ///< To the other side of the surface.
 };
 
 struct BsdfValue {
-  Vec3 value;     ///< BSDF * cosine, of the spread part.
-  float pdf = 0;  ///< The density with which sample() finds the direction by its spread part.
-};
-
-/// What of a material does not depend on the place.
-struct PreparedMaterial {
-  explicit PreparedMaterial(const Material& material);
-
-  Material::Kind kind;
-  float alpha;  ///< 0 where the reflection is perfect.
-  float ior;
-  float internal_reflectance;  ///< Plastic: of diffuse light at the coat, from below.
+  Vec3 value;     ///< BSDF * cosine, of the spread lobes.
+  float pdf = 0;  ///< The density with which sample() finds the direction by its spread lobes.
 };
 
 class Bsdf {
  public:
-  /// At `surface`, seen from `outgoing` (unit length, away from the surface). `color` is in [0, 1].
-  Bsdf(const PreparedMaterial& material, Vec3 color, const Surface& surface, Vec3 outgoing);
+  /// At `surface`, seen from `outgoing` (unit length, away from the surface). Keeps a reference to `look`.
+  /// `normal` is what to shade by, on the side of surface.normal.
+  Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing);
 
-  /// Whether there is a spread part, which light sources can be sampled for.
-  bool has_spread() const;
+  /// Whether there is a spread lobe, which light sources can be sampled for.
+  bool has_spread() const { return has_spread_; }
+  /// Whether one of them reaches behind the surface.
+  bool spreads_behind() const { return spreads_behind_; }
 
   BsdfValue evaluate(Vec3 incoming) const;
 
-  /// `choice` picks the part, `u` the direction in it; all uniform in [0, 1). Nothing where the light is
+  /// `choice` picks the lobe, `u` the direction in it; all uniform in [0, 1). Nothing where the light is
   /// absorbed.
   std::optional<BsdfSample> sample(float choice, Vec2 u) const;
 
@@ -56,22 +58,44 @@ class Bsdf {
   Vec3 facing_normal() const { return geometric_; }
 
  private:
-  BsdfValue evaluate_local(Vec3 incoming) const;
-  Vec3 diffuse(Vec3 incoming) const;
-  float coat_probability() const;
-  float shadow_softening(Vec3 incoming) const;
-  std::optional<BsdfSample> sample_mirror(Vec3 weight) const;
-  std::optional<BsdfSample> sample_glass(float choice) const;
-  std::optional<BsdfSample> sample_spread(float choice, Vec2 u) const;
+  enum Lobe { coat, sheen, metal, specular, diffuse, through, glass, kLobes };
+  struct Scattered {  // what one lobe does to one direction
+    Vec3 value;
+    float pdf = 0;
+  };
 
-  const PreparedMaterial& material_;
-  Vec3 color_;
+  void set_shares();
+  void set_chances();
+  Scattered evaluate_lobe(Lobe lobe, Vec3 incoming) const;
+  Scattered evaluate_metal(Vec3 incoming) const;
+  Scattered evaluate_glass(Vec3 incoming) const;
+  BsdfValue evaluate_local(Vec3 incoming) const;
+  std::optional<Vec3> sample_lobe(Lobe lobe, float choice, Vec2 u) const;
+  std::optional<BsdfSample> sample_perfect(Lobe lobe, float choice) const;
+  bool is_perfect(Lobe lobe) const;
+
+  Vec3 metal_fresnel(float cosine) const;
+  Vec3 specular_fresnel(float cosine) const;
+  float coat_albedo(float cosine) const;
+  float boundary_albedo(float cosine) const;
+  float glass_reflectance(float cosine) const;
+  float shadow_softening(Vec3 incoming) const;
+  Vec3 to_world(Vec3 local) const { return x_ * local.x + y_ * local.y + z_ * local.z; }
+
+  const Look& look_;
   bool is_inside_;  // seen from the back of the geometric normal
+  bool has_spread_ = false, spreads_behind_ = false;
   Vec3 geometric_;  // towards the viewer
   Vec3 x_, y_, z_;  // the shading frame, z towards the viewer
   Vec3 outgoing_world_;
-  Vec3 outgoing_;        // in the shading frame
-  float reflected_ = 0;  // glass and plastic: the share that the boundary reflects
+  Vec3 outgoing_;       // in the shading frame
+  float eta_;           // glass: the index of refraction of the other side over that of this side
+  float alpha_;         // of metal, glass and boundary
+  Vec3 diffuse_;        // what the matte base sends back of the light that reaches it
+  float boundary_ = 0;  // the share of the clear boundary's reflection, over the matte base
+  std::array<float, kLobes> share_{};   // of the surface's area, less what the layers above take
+  std::array<float, kLobes> chance_{};  // of being sampled
+  float multiple_ = 0;                  // metal: the share of the light that bounces on between the facets
 };
 
 }  // namespace boxwood::render

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "boxwood/render/light.h"
 #include "boxwood/render/material.h"
+#include "boxwood/render/texture.h"
 #include "boxwood/render/warp.h"
 
 namespace boxwood::render {
@@ -26,7 +26,8 @@ std::uint32_t emitters_per_part(const Shapes& shapes) {
 }  // namespace
 
 EmitterGroup::EmitterGroup(const SceneDesc& desc, const Instance& instance)
-    : world_from_object_(instance.world_from_object),
+    : desc_(desc),
+      world_from_object_(instance.world_from_object),
       object_from_world_(inverse(instance.world_from_object)),
       volume_scale_(static_cast<float>(std::fabs(boxwood::determinant(instance.world_from_object)))) {
   const Geometry& geometry = desc.geometries[instance.geometry.value];
@@ -55,24 +56,53 @@ EmitterGroup::EmitterGroup(const SceneDesc& desc, const Instance& instance)
           if constexpr (std::is_same_v<Shapes, TriangleMesh>) {
             const auto& [a, b, c] = shapes.indices[i];
             add(Triangle{shapes.positions[a], shapes.positions[b], shapes.positions[c]}, material);
+            if (material.emission_texture.is_valid()) {
+              Emitter& emitter = emitters_.back();
+              emitter.texture = material.emission_texture;
+              emitter.uvs = shapes.uvs.empty()
+                                ? std::array<Vec2, 3>{Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}}
+                                : std::array<Vec2, 3>{shapes.uvs[a], shapes.uvs[b], shapes.uvs[c]};
+              emitter.mean_radiance = mean_of_texture(emitter);
+            }
           } else if constexpr (!std::is_same_v<Shapes, std::vector<AnyShape>>) {
             add(shapes[i], material);
           }
         }
       },
       geometry.shapes);
+}
 
-  // Choose by power: each emitter's share of the whole.
-  for (const Emitter& emitter : emitters_) {
-    strength_ +=
-        double(emitter.area) * brightness(emitter.radiance) * (emitter.emits_from_both_sides ? 2 : 1);
-    running_strength_.push_back(strength_);
+Vec3 EmitterGroup::textured_radiance(const Emitter& triangle, Vec2 weights) const {
+  const auto& [a, b, c] = triangle.uvs;
+  const float first = 1 - weights.x - weights.y;
+  const Vec2 uv{a.x * first + b.x * weights.x + c.x * weights.y,
+                a.y * first + b.y * weights.x + c.y * weights.y};
+  return triangle.radiance * texture_at(desc_, triangle.texture, uv).color;
+}
+
+/// The mean over some points; never 0, since there may be light between them.
+float EmitterGroup::mean_of_texture(const Emitter& triangle) const {
+  constexpr int kSteps = 4;
+  float sum = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j)
+      sum += brightness(
+          textured_radiance(triangle, uniform_triangle({(static_cast<float>(i) + 0.5f) / kSteps,
+                                                        (static_cast<float>(j) + 0.5f) / kSteps})));
+  return max(sum / (kSteps * kSteps), 0.01f * brightness(triangle.radiance));
+}
+
+LightBounds EmitterGroup::bounds(std::size_t index) const {
+  const Emitter& emitter = emitters_[index];
+  LightBounds bounds;
+  bounds.box = boxes_[index];
+  bounds.strength = emitter.area * emitter.mean_radiance;
+  bounds.is_two_sided = emitter.emits_from_both_sides;
+  if (emitter.kind != Emitter::Kind::sphere) {
+    bounds.axis = emitter.normal;
+    bounds.cos_facing = 1;
   }
-  double before = 0;
-  for (std::size_t i = 0; i < emitters_.size() && strength_ > 0; ++i) {
-    emitters_[i].probability = static_cast<float>((running_strength_[i] - before) / strength_);
-    before = running_strength_[i];
-  }
+  return bounds;
 }
 
 void EmitterGroup::add(const Triangle& triangle, const Material& material) {
@@ -82,10 +112,11 @@ void EmitterGroup::add(const Triangle& triangle, const Material& material) {
   emitter.y = world_from_object_.point(triangle.c) - emitter.a;
   emitter.area = 0.5f * length(cross(emitter.x, emitter.y));
   emitter.normal = transform_normal(object_from_world_, triangle.normal());
-  bounds_.extend(emitter.a);
-  bounds_.extend(emitter.a + emitter.x);
-  bounds_.extend(emitter.a + emitter.y);
-  finish(emitter, material);
+  Box3 box;
+  box.extend(emitter.a);
+  box.extend(emitter.a + emitter.x);
+  box.extend(emitter.a + emitter.y);
+  finish(emitter, material, box);
 }
 
 void EmitterGroup::add(const Quad& quad, const Material& material) {
@@ -115,8 +146,7 @@ void EmitterGroup::add(const Disk& disk, const Material& material) {
   emitter.y = world_from_object_.vector(frame.y * disk.radius);
   emitter.area = kPi * length(cross(emitter.x, emitter.y));
   emitter.normal = transform_normal(object_from_world_, frame.z);
-  bounds_.extend(transform_box(world_from_object_, disk.box()));
-  finish(emitter, material);
+  finish(emitter, material, transform_box(world_from_object_, disk.box()));
 }
 
 void EmitterGroup::add(const Sphere& sphere, const Material& material) {
@@ -126,24 +156,21 @@ void EmitterGroup::add(const Sphere& sphere, const Material& material) {
   // Squeezed spheres: the area for a mean scale will do, since it only guides the choice.
   emitter.area = 4 * kPi * sphere.radius * sphere.radius * std::cbrt(volume_scale_ * volume_scale_);
   emitter.normal = {0, 0, 1};
-  bounds_.extend(transform_box(world_from_object_, sphere.box()));
-  finish(emitter, material);
+  finish(emitter, material, transform_box(world_from_object_, sphere.box()));
 }
 
-void EmitterGroup::finish(Emitter emitter, const Material& material) {
+void EmitterGroup::finish(Emitter emitter, const Material& material, Box3 box) {
   emitter.radiance = material.emission;
+  emitter.mean_radiance = brightness(material.emission);
   emitter.emits_from_both_sides = material.emits_from_both_sides;
   emitter.normal = normalize(emitter.normal);
   // Shapes that cannot be hit cannot shine either.
   if (!(emitter.area > 0) || !std::isfinite(emitter.area) || !is_finite(emitter.normal)) emitter.area = 0;
   emitters_.push_back(emitter);
+  boxes_.push_back(box);
 }
 
-EmitterPoint EmitterGroup::sample(Vec3 receiver, float choice, Vec2 u) const {
-  // Choose an emitter by its share of the strength.
-  const auto found = std::upper_bound(running_strength_.begin(), running_strength_.end(), choice * strength_);
-  const auto index = std::min<std::size_t>(static_cast<std::size_t>(found - running_strength_.begin()),
-                                           emitters_.size() - 1);
+EmitterPoint EmitterGroup::sample(std::size_t index, Vec3 receiver, Vec2 u) const {
   const Emitter& emitter = emitters_[index];
   if (emitter.kind == Emitter::Kind::sphere) return sample_sphere(emitter, receiver, u);
 
@@ -152,9 +179,9 @@ EmitterPoint EmitterGroup::sample(Vec3 receiver, float choice, Vec2 u) const {
   point.surface.position = emitter.a + emitter.x * weights.x + emitter.y * weights.y;
   point.surface.error = position_error(abs(emitter.a) + abs(emitter.x) + abs(emitter.y));
   point.surface.normal = point.surface.shading_normal = emitter.normal;
-  point.radiance = emitter.radiance;
+  point.radiance = emitter.texture.is_valid() ? textured_radiance(emitter, weights) : emitter.radiance;
   point.emits_from_both_sides = emitter.emits_from_both_sides;
-  point.pdf_area = emitter.probability / emitter.area;
+  point.pdf_area = 1 / emitter.area;
   return point;
 }
 
@@ -168,7 +195,7 @@ float EmitterGroup::sphere_density(const Emitter& sphere, Vec3 object_normal, Ve
   const bool is_outside = length_squared(to_receiver) > sphere.radius * sphere.radius;
   if (is_outside && !(dot(to_receiver, object_normal) > 0)) return 0;
   const float object_area = (is_outside ? 2 : 4) * kPi * sphere.radius * sphere.radius;
-  return sphere.probability / (object_area * area_scale(object_normal));
+  return 1 / (object_area * area_scale(object_normal));
 }
 
 EmitterPoint EmitterGroup::sample_sphere(const Emitter& sphere, Vec3 receiver, Vec2 u) const {
@@ -192,11 +219,15 @@ EmitterPoint EmitterGroup::sample_sphere(const Emitter& sphere, Vec3 receiver, V
   return point;
 }
 
-float EmitterGroup::pdf_area(PrimId primitive_id, std::uint32_t part, Vec3 position, Vec3 receiver) const {
+std::optional<std::uint32_t> EmitterGroup::find(PrimId primitive_id, std::uint32_t part) const {
   const std::uint32_t first = first_emitter_[primitive_id.value];
-  if (first == kNoEmitter) return 0;
-  const Emitter& emitter = emitters_[first + part * emitters_per_part_];
-  if (emitter.kind != Emitter::Kind::sphere) return emitter.area > 0 ? emitter.probability / emitter.area : 0;
+  if (first == kNoEmitter) return std::nullopt;
+  return first + part * emitters_per_part_;
+}
+
+float EmitterGroup::pdf_area(std::size_t index, Vec3 position, Vec3 receiver) const {
+  const Emitter& emitter = emitters_[index];
+  if (emitter.kind != Emitter::Kind::sphere) return emitter.area > 0 ? 1 / emitter.area : 0;
   return sphere_density(emitter, normalize(object_from_world_.point(position) - emitter.a), receiver);
 }
 

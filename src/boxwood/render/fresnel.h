@@ -24,6 +24,29 @@ inline Vec3 fresnel_metal(float cosine, Vec3 color) {
   return color + (splat(1) - color) * (x2 * x2 * x);
 }
 
+/// The share that a metal with the complex index of refraction eta + ik reflects of unpolarized light.
+inline float fresnel_conductor(float cosine, float eta, float k) {
+  // Born and Wolf, Principles of Optics, 14.2: by the real and the imaginary part of eta cos' on the far
+  // side.
+  const float cos2 = cosine * cosine, sin2 = 1 - cos2;
+  const float base = eta * eta - k * k - sin2;
+  const float a2_b2 = std::sqrt(base * base + 4 * eta * eta * k * k);
+  const float a = std::sqrt(max(0.0f, 0.5f * (a2_b2 + base)));
+  const float perpendicular = (a2_b2 + cos2 - 2 * a * cosine) / (a2_b2 + cos2 + 2 * a * cosine);
+  const float parallel = perpendicular * (cos2 * a2_b2 + sin2 * sin2 - 2 * a * cosine * sin2) /
+                         (cos2 * a2_b2 + sin2 * sin2 + 2 * a * cosine * sin2);
+  return 0.5f * (perpendicular + parallel);
+}
+
+/// Snell's law: the direction on the other side of a boundary with the normal `normal`, for the direction
+/// `outgoing` on its side; `eta` is the index of refraction of this side over the other. Precondition: there
+/// is no total reflection.
+inline Vec3 refract(Vec3 outgoing, Vec3 normal, float eta) {
+  const float cosine = dot(outgoing, normal);
+  const float other_cosine = std::sqrt(max(0.0f, 1 - eta * eta * (1 - cosine * cosine)));
+  return normalize(normal * (eta * cosine - other_cosine) - outgoing * eta);
+}
+
 /// The share that the boundary reflects of light that comes from all directions of the *dense* side alike.
 /// Worked out from the outer side, where the integral is smooth, by the reciprocity (1 - inner) eta^2 = 1 -
 /// outer.

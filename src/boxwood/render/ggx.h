@@ -4,8 +4,8 @@
 // et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007). Normals are drawn from those
 // visible from the outgoing direction: Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 2018,
 // in the form of Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023. Light that
-// bounces twice between facets is not accounted for, so rough surfaces lose some of it. All vectors are of
-// unit length, in a frame whose z is the normal.
+// bounces twice between facets is not accounted for here, so rough surfaces lose some of it: albedo_table.h
+// says how much. All vectors are of unit length, in a frame whose z is the normal.
 #pragma once
 
 #include "boxwood/render/warp.h"
@@ -38,6 +38,19 @@ struct Ggx {
     const Vec3 half = Vec3{radius * std::cos(angle), radius * std::sin(angle), z} + stretched;
     // The floor keeps the vector from vanishing where the facet is seen exactly edge-on.
     return normalize(Vec3{alpha * half.x, alpha * half.y, max(half.z, 1e-7f)});
+  }
+
+  /// The share of the facets seen from `outgoing`, above the surface, that `incoming` sees too; the two are
+  /// on one side (their heights then go together) or on two.
+  float masking(Vec3 outgoing, Vec3 incoming) const {
+    const float first = lambda(outgoing), second = lambda(incoming);
+    if (incoming.z > 0) return (1 + first) / (1 + first + second);
+    return 1 / (1 + second);
+  }
+
+  /// The density, per solid angle, of the normal `half` among those visible from `outgoing`.
+  float visible_density(Vec3 outgoing, Vec3 half) const {
+    return density(half) * max(0.0f, dot(outgoing, half)) / (outgoing.z * (1 + lambda(outgoing)));
   }
 
   /// The BRDF times the incoming cosine, without the Fresnel factor.

@@ -1,7 +1,6 @@
 #include "boxwood/render/light.h"
 
 #include <algorithm>
-#include <array>
 
 #include "boxwood/render/material.h"
 #include "boxwood/render/warp.h"
@@ -11,18 +10,28 @@ namespace {
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
 
-/// Up to this many lights are weighed for each point that is lit; more of them are chosen by strength alone.
-constexpr std::size_t kMaxWeighed = 32;
-
 /// Whether a scene has any light of its own.
 bool is_lit(const SceneDesc& desc) {
-  if (desc.sky || !desc.point_lights.empty() || !desc.distant_lights.empty()) return true;
+  if (desc.sky || !desc.point_lights.empty() || !desc.spot_lights.empty() || !desc.distant_lights.empty() ||
+      !desc.environments.empty())
+    return true;
   return std::any_of(desc.materials.begin(), desc.materials.end(), is_emissive);
 }
 
-/// What is left of a random number after it chose something of width `width`: uniform in [0, 1) again.
-float stretch(float left, float width) {
-  return width > 0 ? min(max(left / width, 0.0f), 0x1.fffffep-1f) : 0;
+/// A spot light's share of its intensity at an angle from the axis: none outside, smooth in between.
+float spot_falloff(const SpotLight& light, float cosine) {
+  if (cosine >= light.inner_cosine) return 1;
+  if (cosine <= light.outer_cosine) return 0;
+  const float x = (cosine - light.outer_cosine) / (light.inner_cosine - light.outer_cosine);
+  return x * x * (3 - 2 * x);
+}
+
+/// A ray from `surface` that ends at a point without a surface.
+Ray ray_to_point(const Surface& surface, Vec3 direction, Vec3 point) {
+  Ray ray = surface.spawn(direction);
+  ray.direction = point - ray.origin;
+  ray.t_max = 1;
+  return ray;
 }
 
 }  // namespace
@@ -32,127 +41,141 @@ Lights::Lights(const Scene& scene, const Camera& camera) : scene_(scene) {
   sky_ = is_lit(desc) ? desc.sky : plain_sky(camera);
   if (sky_) sun_ = sun_of(*sky_);
 
-  // Shapes that shine, a group for each instance.
+  // Lights from far away.
+  for (std::size_t i = 0; i < desc.distant_lights.size(); ++i)
+    far_lights_.push_back({Far::Kind::distant, static_cast<std::uint32_t>(i),
+                           -desc.distant_lights[i].direction, brightness(desc.distant_lights[i].irradiance)});
+  if (sun_)
+    far_lights_.push_back(
+        {Far::Kind::sun, 0, sun_->direction, brightness(sun_->radiance) * sun_->solid_angle()});
+  for (const Environment& environment : desc.environments) {
+    environments_.emplace_back(environment);
+    far_lights_.push_back({Far::Kind::environment,
+                           static_cast<std::uint32_t>(environments_.size() - 1),
+                           {},
+                           environments_.back().strength()});
+  }
+
+  // Lights that stand somewhere: shapes that shine, a group for each instance, and points.
   const std::vector<Instance> instances = placed_instances(desc);
   group_of_instance_.assign(instances.size(), kNoGroup);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     EmitterGroup group(desc, instances[i]);
-    if (group.is_empty()) continue;
+    if (group.size() == 0) continue;
     const auto index = static_cast<std::uint32_t>(groups_.size());
     group_of_instance_[i] = index;
-    light_of_group_.push_back(static_cast<std::uint32_t>(lights_.size()));
-    Light light{Light::Kind::group, index};
-    light.box = group.bounds();
-    light.position = light.box.center();
-    light.strength = group.strength();
-    // Inside the group's bounding sphere the distance to its middle says nothing.
-    light.min_distance_squared = 0.25f * length_squared(light.box.extent());
-    lights_.push_back(light);
+    first_of_group_.push_back(static_cast<std::uint32_t>(near_lights_.size()));
+    for (std::uint32_t e = 0; e < group.size(); ++e)
+      add_near({Near::Kind::emitter, index, e}, group.bounds(e));
     groups_.push_back(std::move(group));
   }
+  for (std::uint32_t i = 0; i < desc.point_lights.size(); ++i) {
+    LightBounds bounds;
+    bounds.box.extend(desc.point_lights[i].position);
+    bounds.strength = brightness(desc.point_lights[i].intensity);
+    add_near({Near::Kind::point, 0, i}, bounds);
+  }
+  for (std::uint32_t i = 0; i < desc.spot_lights.size(); ++i) {
+    const SpotLight& spot = desc.spot_lights[i];
+    LightBounds bounds;
+    bounds.box.extend(spot.position);
+    bounds.strength = brightness(spot.intensity);
+    bounds.axis = spot.direction;
+    bounds.cos_facing = spot.inner_cosine;
+    bounds.cos_spread = std::cos(std::acos(min(max(spot.outer_cosine, -1.0f), 1.0f)) -
+                                 std::acos(min(max(spot.inner_cosine, -1.0f), 1.0f)) + 1e-3f);
+    add_near({Near::Kind::spot, 0, i}, bounds);
+  }
+  tree_ = LightTree(near_bounds_);
+  near_bounds_ = {};
+}
 
-  for (std::size_t i = 0; i < desc.point_lights.size(); ++i) {
-    Light light{Light::Kind::point, static_cast<std::uint32_t>(i)};
-    light.position = desc.point_lights[i].position;
-    light.strength = brightness(desc.point_lights[i].intensity);
-    lights_.push_back(light);
-  }
-  for (std::size_t i = 0; i < desc.distant_lights.size(); ++i) {
-    Light light{Light::Kind::distant, static_cast<std::uint32_t>(i)};
-    light.direction = -desc.distant_lights[i].direction;
-    light.strength = brightness(desc.distant_lights[i].irradiance);
-    lights_.push_back(light);
-  }
-  if (sun_) {
-    sun_light_index_ = static_cast<std::uint32_t>(lights_.size());
-    Light light{Light::Kind::sun};
-    light.direction = sun_->direction;
-    light.strength = brightness(sun_->radiance) * sun_->solid_angle();
-    lights_.push_back(light);
-  }
-
-  double sum = 0;
-  for (const Light& light : lights_) running_strength_.push_back(sum += light.strength);
+void Lights::add_near(const Near& light, const LightBounds& bounds) {
+  near_lights_.push_back(light);
+  near_bounds_.push_back(bounds);
 }
 
 /// An estimate of the irradiance that `light` could cause at `from` at most. 0 only where it causes none.
-float Lights::importance(const Light& light, const Receiver& from) const {
+float Lights::importance(const Far& light, const Receiver& from) const {
+  if (!(length_squared(from.normal) > 0)) return light.strength;
   switch (light.kind) {
-    case Light::Kind::distant:
+    case Far::Kind::distant:
       return dot(light.direction, from.normal) > 0 ? light.strength : 0;
-    case Light::Kind::sun: {
+    case Far::Kind::sun: {
       // The sun's upper rim may look over the horizon of the surface while its middle is below.
       const float rim = std::sqrt(sun_->versine * (2 - sun_->versine));
       return dot(light.direction, from.normal) > -rim || sun_->versine >= 1 ? light.strength : 0;
     }
-    case Light::Kind::point: {
-      const Vec3 to_light = light.position - from.position;
-      return dot(to_light, from.normal) > 0 ? light.strength / max(length_squared(to_light), 1e-30f) : 0;
-    }
-    case Light::Kind::group:
+    case Far::Kind::environment:
       break;
   }
-  // The corner of the box farthest along the normal tells whether any of it is above the surface.
-  const Vec3 highest{from.normal.x > 0 ? light.box.upper.x : light.box.lower.x,
-                     from.normal.y > 0 ? light.box.upper.y : light.box.lower.y,
-                     from.normal.z > 0 ? light.box.upper.z : light.box.lower.z};
-  if (!(dot(highest - from.position, from.normal) > 0)) return 0;
-  return light.strength /
-         max(max(length_squared(light.position - from.position), light.min_distance_squared), 1e-30f);
+  return light.strength;
 }
 
-std::optional<std::uint32_t> Lights::choose(const Receiver& from, float& choice, float& probability) const {
-  if (lights_.empty()) return std::nullopt;
-  if (lights_.size() > kMaxWeighed) {
-    const double target = choice * running_strength_.back();
-    const auto found = std::upper_bound(running_strength_.begin(), running_strength_.end(), target);
-    const auto index = std::min<std::size_t>(static_cast<std::size_t>(found - running_strength_.begin()),
-                                             lights_.size() - 1);
-    const double before = index > 0 ? running_strength_[index - 1] : 0;
-    choice = stretch(static_cast<float>(target - before), lights_[index].strength);
-    probability = choice_probability(static_cast<std::uint32_t>(index), from);
-    return static_cast<std::uint32_t>(index);
-  }
-
-  std::array<float, kMaxWeighed> weights;
-  float sum = 0;
-  for (std::size_t i = 0; i < lights_.size(); ++i) sum += weights[i] = importance(lights_[i], from);
-  if (!(sum > 0) || !(sum < kInfinity)) return std::nullopt;
-  float left = choice * sum;
-  std::size_t index = 0, last = 0;
-  for (; index < lights_.size(); ++index) {
-    if (!(weights[index] > 0)) continue;
-    last = index;
-    if (left < weights[index]) break;
-    left -= weights[index];
-  }
-  choice = stretch(left, weights[last]);
-  probability = weights[last] / sum;
-  return static_cast<std::uint32_t>(last);
-}
-
-float Lights::choice_probability(std::uint32_t light_index, const Receiver& from) const {
-  const Light& chosen = lights_[light_index];
-  if (lights_.size() > kMaxWeighed) return static_cast<float>(chosen.strength / running_strength_.back());
-  float sum = 0;
-  for (const Light& light : lights_) sum += importance(light, from);
-  return sum > 0 && sum < kInfinity ? importance(chosen, from) / sum : 0;
+float Lights::sum_of_importances(const Receiver& from) const {
+  float sum = tree_.importance(from);
+  for (const Far& light : far_lights_) sum += importance(light, from);
+  return sum;
 }
 
 std::optional<LightSample> Lights::sample(const Surface& surface, Vec3 facing_normal, float choice,
                                           Vec2 u) const {
   const Receiver from{surface.position, facing_normal};
-  float probability = 0;
-  const std::optional<std::uint32_t> index = choose(from, choice, probability);
-  if (!index || !(probability > 0)) return std::nullopt;
-  const Light& light = lights_[*index];
-  const SceneDesc& desc = scene_.description();
+  const float sum = sum_of_importances(from);
+  if (!(sum > 0) || !(sum < kInfinity)) return std::nullopt;
 
+  // One of the lights from far away, or the tree. What is left of the choice chooses again.
+  float left = choice * sum;
+  for (const Far& light : far_lights_) {
+    const float weight = importance(light, from);
+    if (left < weight) return sample_far(light, surface, weight / sum, u);
+    left -= weight;
+  }
+  const float weight = tree_.importance(from);
+  if (!(weight > 0)) return std::nullopt;
+  float rest = min(max(left / weight, 0.0f), 0x1.fffffep-1f);
+  const std::optional<LightTree::Choice> chosen = tree_.choose(from, rest);
+  if (!chosen) return std::nullopt;
+  return sample_near(near_lights_[chosen->light], surface, chosen->probability * weight / sum, u);
+}
+
+std::optional<LightSample> Lights::sample_far(const Far& light, const Surface& surface, float probability,
+                                              Vec2 u) const {
   LightSample sample;
   sample.pdf = probability;
   switch (light.kind) {
-    case Light::Kind::group: {
-      const EmitterPoint point = groups_[light.index].sample(surface.position, choice, u);
+    case Far::Kind::distant:
+      sample.direction = light.direction;
+      sample.radiance = scene_.description().distant_lights[light.index].irradiance;
+      sample.is_perfect = true;
+      break;
+    case Far::Kind::sun:
+      sample.direction = normalize(Frame(sun_->direction).to_world(uniform_cone(u, sun_->versine)));
+      sample.radiance = sun_->radiance;
+      sample.pdf /= sun_->solid_angle();
+      break;
+    case Far::Kind::environment: {
+      const EnvironmentLight& environment = environments_[light.index];
+      const EnvironmentLight::Sample found = environment.sample(u);
+      sample.direction = found.direction;
+      sample.radiance = environment.radiance(found.direction);
+      sample.pdf *= found.pdf;
+      break;
+    }
+  }
+  sample.shadow_ray = surface.spawn(sample.direction);
+  if (!(sample.pdf > 0) || !(sample.pdf < kInfinity) || !is_finite(sample.direction)) return std::nullopt;
+  return sample;
+}
+
+std::optional<LightSample> Lights::sample_near(const Near& light, const Surface& surface, float probability,
+                                               Vec2 u) const {
+  const SceneDesc& desc = scene_.description();
+  LightSample sample;
+  sample.pdf = probability;
+  switch (light.kind) {
+    case Near::Kind::emitter: {
+      const EmitterPoint point = groups_[light.group].sample(light.index, surface.position, u);
       const Vec3 to_light = point.surface.position - surface.position;
       const float distance_squared = length_squared(to_light);
       sample.direction = to_light / std::sqrt(distance_squared);
@@ -161,59 +184,65 @@ std::optional<LightSample> Lights::sample(const Surface& surface, Vec3 facing_no
       sample.radiance = point.radiance;
       sample.pdf *= point.pdf_area * distance_squared / std::fabs(cosine);
       // End just before the light itself: where a ray from the light would start.
-      sample.shadow_ray = surface.spawn(sample.direction);
-      sample.shadow_ray.direction = point.surface.spawn(-sample.direction).origin - sample.shadow_ray.origin;
-      sample.shadow_ray.t_max = 1;
+      sample.shadow_ray =
+          ray_to_point(surface, sample.direction, point.surface.spawn(-sample.direction).origin);
       break;
     }
-    case Light::Kind::point: {
-      const Vec3 to_light = light.position - surface.position;
+    case Near::Kind::point:
+    case Near::Kind::spot: {
+      const bool is_point = light.kind == Near::Kind::point;
+      const Vec3 position =
+          is_point ? desc.point_lights[light.index].position : desc.spot_lights[light.index].position;
+      const Vec3 to_light = position - surface.position;
       const float distance_squared = length_squared(to_light);
       sample.direction = to_light / std::sqrt(distance_squared);
-      sample.radiance = desc.point_lights[light.index].intensity / distance_squared;
+      sample.radiance =
+          is_point ? desc.point_lights[light.index].intensity
+                   : desc.spot_lights[light.index].intensity *
+                         spot_falloff(desc.spot_lights[light.index],
+                                      -dot(sample.direction, desc.spot_lights[light.index].direction));
+      sample.radiance = sample.radiance / distance_squared;
       sample.is_perfect = true;
-      sample.shadow_ray = surface.spawn(sample.direction);
-      sample.shadow_ray.direction = light.position - sample.shadow_ray.origin;
-      sample.shadow_ray.t_max = 1;
+      sample.shadow_ray = ray_to_point(surface, sample.direction, position);
       break;
     }
-    case Light::Kind::distant:
-      sample.direction = light.direction;
-      sample.radiance = desc.distant_lights[light.index].irradiance;
-      sample.is_perfect = true;
-      sample.shadow_ray = surface.spawn(sample.direction);
-      break;
-    case Light::Kind::sun:
-      sample.direction = normalize(Frame(sun_->direction).to_world(uniform_cone(u, sun_->versine)));
-      sample.radiance = sun_->radiance;
-      sample.pdf /= sun_->solid_angle();
-      sample.shadow_ray = surface.spawn(sample.direction);
-      break;
   }
   if (!(sample.pdf > 0) || !(sample.pdf < kInfinity) || !is_finite(sample.direction)) return std::nullopt;
   return sample;
 }
 
-Vec3 Lights::sun(Vec3 direction, const Receiver& from, float& pdf) const {
-  pdf = 0;
-  if (!sun_ || !sun_->contains(direction)) return {};
-  pdf = choice_probability(sun_light_index_, from) / sun_->solid_angle();
-  return sun_->radiance;
+Lights::FarLight Lights::far_light(std::size_t index, Vec3 direction, const Receiver& from) const {
+  const Far& light = far_lights_[index];
+  FarLight found{{0, 0, 0}, 0};
+  if (light.kind == Far::Kind::sun && sun_->contains(direction)) {
+    found = {sun_->radiance, 1 / sun_->solid_angle()};
+  } else if (light.kind == Far::Kind::environment) {
+    const EnvironmentLight& environment = environments_[light.index];
+    found = {environment.radiance(direction), environment.pdf(direction)};
+  }
+  if (!(max_component(found.radiance) > 0)) return {{0, 0, 0}, 0};
+  const float sum = sum_of_importances(from);
+  found.pdf *= sum > 0 && sum < kInfinity ? importance(light, from) / sum : 0;
+  return found;
 }
 
 Vec3 Lights::emission(const Surface& surface, Vec3 direction) const {
   const Material& material = material_of(scene_.description(), surface.material);
   const bool is_front = dot(surface.normal, direction) < 0;
-  return is_front || material.emits_from_both_sides ? material.emission : Vec3{};
+  if (!is_emissive(material) || (!is_front && !material.emits_from_both_sides)) return {};
+  return emission_at(scene_.description(), material, surface.uv);
 }
 
 float Lights::pdf(const Hit& hit, const Surface& surface, Vec3 direction, const Receiver& from) const {
   const std::uint32_t group = group_of_instance_[hit.instance_id.value];
   if (group == kNoGroup) return 0;
   const float cosine = std::fabs(dot(surface.normal, direction));
-  if (!(cosine > 0)) return 0;
-  const float pdf_area = groups_[group].pdf_area(hit.primitive_id, hit.part, surface.position, from.position);
-  return choice_probability(light_of_group_[group], from) * pdf_area *
+  const std::optional<std::uint32_t> emitter = groups_[group].find(hit.primitive_id, hit.part);
+  const float sum = sum_of_importances(from);
+  if (!(cosine > 0) || !emitter || !(sum > 0) || !(sum < kInfinity)) return 0;
+  const float probability =
+      tree_.probability(first_of_group_[group] + *emitter, from) * tree_.importance(from) / sum;
+  return probability * groups_[group].pdf_area(*emitter, surface.position, from.position) *
          length_squared(surface.position - from.position) / cosine;
 }
 

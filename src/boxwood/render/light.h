@@ -1,9 +1,9 @@
 // light.h: where does light come from, and how likely is a sampler to look there?
 //
 // Next-event estimation: at each point of a path one light is chosen and one point of it tried. The choice
-// goes by how much light each could send to that point at most, so that a lamp nearby and the sun get their
-// turns wherever they matter. Shapes that emit are gathered into groups, one for each instance; within a
-// group a shape is chosen by its power.
+// goes by how much light each could send to that point at most: lights that stand somewhere are chosen by
+// their tree (light_tree.h), and the whole tree and each light from far away (a distant light, the sun, a
+// picture of the surroundings) by their irradiance.
 //
 // The same densities are known for rays that find a light by chance, so that both ways can be weighed
 // (multiple importance sampling, Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "boxwood/render/emitter.h"
+#include "boxwood/render/environment.h"
 #include "boxwood/render/sky.h"
 #include "boxwood/scene/surface.h"
 
@@ -30,27 +31,31 @@ struct LightSample {
   Ray shadow_ray;           ///< Hits nothing when the light is in sight.
 };
 
-/// A point that light falls on, for the choice of a light.
-struct Receiver {
-  Vec3 position;
-  Vec3 normal;  ///< Towards the side that is lit; unit length.
-};
-
 class Lights {
  public:
   /// Collects every light of the scene; without any it adds the plain sky. Keeps a reference to `scene`.
   Lights(const Scene& scene, const Camera& camera);
 
-  /// Tries one light from `surface`, which is lit on the side of `facing_normal`. Nothing when no light could
-  /// reach it, or the point tried faces away.
+  /// Tries one light from `surface`, which is lit on the side of `facing_normal`, or on both when that is
+  /// zero. Nothing when no light could reach it, or the point tried faces away.
   std::optional<LightSample> sample(const Surface& surface, Vec3 facing_normal, float choice, Vec2 u) const;
 
   /// The radiance of the dome along a ray that hits nothing.
   Vec3 dome(Vec3 direction) const { return sky_ ? sky_radiance(*sky_, direction) : Vec3{}; }
 
-  /// The radiance of the sun, where `direction` (unit length) points into it, and the density with which
-  /// sample() finds it.
-  Vec3 sun(Vec3 direction, const Receiver& from, float& pdf) const;
+  /// A light from far away that a ray may run into, and the density with which sample() finds the direction.
+  struct FarLight {
+    Vec3 radiance;
+    float pdf;
+  };
+  /// Calls visit(FarLight) for the sun, where `direction` (unit length) points into it, and for each picture
+  /// of the surroundings.
+  template <class Visit>
+  void for_each_far_light(Vec3 direction, const Receiver& from, const Visit& visit) const {
+    for (std::size_t i = 0; i < far_lights_.size(); ++i)
+      if (const FarLight light = far_light(i, direction, from); max_component(light.radiance) > 0)
+        visit(light);
+  }
 
   /// The radiance that `surface` sends against `direction`.
   Vec3 emission(const Surface& surface, Vec3 direction) const;
@@ -60,37 +65,40 @@ class Lights {
   float pdf(const Hit& hit, const Surface& surface, Vec3 direction, const Receiver& from) const;
 
  private:
-  /// Any light that can be chosen.
-  struct Light {
-    enum class Kind { group, point, distant, sun } kind;
-    std::uint32_t index = 0;  // of the group, the point light or the distant light
-    Vec3 position;            // group: the middle of its box; point light
+  /// A light without a place.
+  struct Far {
+    enum class Kind { distant, sun, environment } kind;
+    std::uint32_t index = 0;  // of the distant light or the environment
     Vec3 direction;           // distant and sun: towards it
-    float strength = 0;       // brightness: irradiance, at distance 1 where there is a distance
-    float min_distance_squared = 0;
-    Box3 box;  // group
+    float strength = 0;       // irradiance
+  };
+  /// A light of the tree.
+  struct Near {
+    enum class Kind { emitter, point, spot } kind;
+    std::uint32_t group = 0;  // emitter
+    std::uint32_t index = 0;  // in its group, or in the description
   };
 
-  float importance(const Light& light, const Receiver& from) const;
-  /// Chooses a light, and stretches what is left of `choice` so that it can choose again.
-  std::optional<std::uint32_t> choose(const Receiver& from, float& choice, float& probability) const;
-  float choice_probability(std::uint32_t light_index, const Receiver& from) const;
+  void add_near(const Near& light, const LightBounds& bounds);
+  FarLight far_light(std::size_t index, Vec3 direction, const Receiver& from) const;
+  float importance(const Far& light, const Receiver& from) const;
+  float sum_of_importances(const Receiver& from) const;
+  std::optional<LightSample> sample_far(const Far& light, const Surface& surface, float probability,
+                                        Vec2 u) const;
+  std::optional<LightSample> sample_near(const Near& light, const Surface& surface, float probability,
+                                         Vec2 u) const;
 
   const Scene& scene_;
   std::optional<Sky> sky_;
   std::optional<Sun> sun_;
-  std::vector<Light> lights_;
-  // The sum of strengths up to each light; for large numbers of lights.
-  std::vector<double> running_strength_;
+  std::vector<Far> far_lights_;
+  std::vector<EnvironmentLight> environments_;
+  std::vector<Near> near_lights_;
+  std::vector<LightBounds> near_bounds_;  // only while the tree is built
+  LightTree tree_;
   std::vector<EmitterGroup> groups_;
   std::vector<std::uint32_t> group_of_instance_;  // InstanceId -> groups_; kNoGroup
-  std::vector<std::uint32_t> light_of_group_;
-  std::uint32_t sun_light_index_ = 0;
+  std::vector<std::uint32_t> first_of_group_;     // in near_lights_
 };
-
-/// How much a light matters to the eye.
-inline float brightness(Vec3 radiance) {
-  return 0.2126f * radiance.x + 0.7152f * radiance.y + 0.0722f * radiance.z;
-}
 
 }  // namespace boxwood::render

@@ -1,6 +1,12 @@
-// material.h: which material is a surface made of, and which color has it there?
+// material.h: what is a surface made of, at a point of it?
+//
+// A Material speaks of a whole surface, with textures; a Look is what is left of it at one point, when all
+// textures have been looked up. A PreparedMaterial is what can be worked out once for all points.
 #pragma once
 
+#include <vector>
+
+#include "boxwood/render/albedo_table.h"
 #include "boxwood/scene/description.h"
 
 namespace boxwood::render {
@@ -9,10 +15,61 @@ namespace boxwood::render {
 const Material& material_of(const SceneDesc& desc, MaterialId id);
 
 /// The material's color times its texture at `uv`, kept within [0, 1]: no surface reflects more than it gets.
-Vec3 base_color(const SceneDesc& desc, const Material& material, Vec2 uv);
+/// `width` is as for texture_at (texture.h).
+Vec3 base_color(const SceneDesc& desc, const Material& material, Vec2 uv, float width = 0);
+
+/// The radiance that the front side sends out at `uv`.
+Vec3 emission_at(const SceneDesc& desc, const Material& material, Vec2 uv);
+
+/// The share of light that meets the surface at `uv`; the rest goes straight on.
+float opacity_at(const SceneDesc& desc, const Material& material, Vec2 uv);
 
 inline bool is_emissive(const Material& material) {
   return max_component(material.emission) > 0;
 }
+
+/// Whether light may go straight through some of it.
+inline bool is_see_through(const Material& material) {
+  return material.kind == Material::Kind::clear || material.opacity < 1 ||
+         material.opacity_texture.texture.is_valid();
+}
+
+/// What of a material does not depend on the place.
+struct PreparedMaterial {
+  explicit PreparedMaterial(const Material& material);
+
+  float ior;
+  float fresnel_mean;  ///< Of a smooth boundary from outside, over a hemisphere of equal light.
+  /// For every width that the material has; null where it has no such lobe.
+  std::shared_ptr<const AlbedoTable> reflection, coat_over_base, clear_coat, glass_outside, glass_inside,
+      sheen;
+};
+
+/// A material at a point.
+struct Look {
+  Material::Kind kind;
+  Vec3 color;
+  float alpha;  ///< GGX width; 0 where the reflection is perfect.
+  float ior;
+  Vec3 metal_eta, metal_k;
+  Vec3 reflection_color, transmission_color;
+  bool is_thin;
+  float metalness, transmission, specular;
+  Vec3 specular_color;
+  float coat, coat_alpha;
+  Vec3 sheen_color;
+  float sheen_alpha;
+  const PreparedMaterial* prepared;
+};
+
+/// Looks up all textures of `material`, which is not a mix. `prepared` must outlive the result.
+Look look_at(const SceneDesc& desc, const Material& material, const PreparedMaterial& prepared, Vec2 uv,
+             float width = 0);
+
+/// The share of the second of a mix's two materials.
+float mix_share(const SceneDesc& desc, const Material& mix, Vec2 uv);
+
+/// Follows mixes down to the material that `choice` picks, uniform in [0, 1).
+MaterialId choose_material(const SceneDesc& desc, MaterialId id, Vec2 uv, float choice);
 
 }  // namespace boxwood::render

@@ -1,18 +1,26 @@
 #include "boxwood/render/path.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "boxwood/render/bsdf.h"
 #include "boxwood/render/light.h"
 #include "boxwood/render/material.h"
+#include "boxwood/render/shadow.h"
+#include "boxwood/render/uv_frame.h"
 
 namespace boxwood::render {
 namespace {
 
-// A bound for light that is caught in glass; roulette ends other paths long before.
-constexpr int kMaxBounces = 64;
+// Bounds for light that is caught in glass, and for rays that pass through clear surfaces one behind the
+// other; roulette ends other paths long before.
+constexpr int kMaxBounces = 64, kMaxSteps = 1024;
 constexpr int kRouletteAfter = 3;  // bounces; early ones carry most of the picture
 constexpr float kMaxSurvival = 0.95f;
+
+/// How far a cone of rays opens, in radians, when a surface scatters it: textures seen by way of a wall need
+/// no detail.
+constexpr float kScatteredAngle = 0.2f;
 
 /// The weight of a sample of density `a` when the same light could
 /// have been found with density `b`: Veach's power heuristic.
@@ -21,84 +29,204 @@ float power_heuristic(float a, float b) {
   return 1 / (1 + ratio * ratio);
 }
 
+/// Where the path stands, and how it got there:
+/// which part of the light that it may run into now is its own.
+struct Vertex {
+  Receiver place;  // the last point of the path
+  float pdf = 0;   // of the direction taken from there
+  // Next-event estimation could not have found what this direction finds; true at the camera.
+  bool is_perfect = true;
+};
+
+/// A path on its way.
+struct Path {
+  Ray ray;
+  Sampler sampler;
+  Vec3 gathered{0, 0, 0}, throughput{1, 1, 1};
+  Vec3 absorption{0, 0, 0};  // of what the ray is in
+  Vertex last;
+  float cone_width = 0, cone_angle = 0;
+  int bounce = 0, steps = 0;
+  std::uint32_t index = 0;  // of the sample
+};
+
+/// Light that a path gets if nothing is in the way.
+struct Pending {
+  std::uint32_t path;  // position among the paths on their way
+  Vec3 light;
+  Vec3 absorption;
+};
+
 class PathTracer final : public Integrator {
  public:
-  PathTracer(const Scene& scene, const Camera& camera) : scene_(scene), lights_(scene, camera) {
+  PathTracer(const Scene& scene, const Camera& camera, float pixel_angle)
+      : scene_(scene), lights_(scene, camera), shadows_(scene), pixel_angle_(pixel_angle) {
     for (const Material& material : scene.description().materials) materials_.emplace_back(material);
   }
 
   int channels() const override { return 3; }
+
   bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, std::uint64_t& rays) const override {
-    store(out, radiance(ray, sampler, rays));
-    return true;
+    bool is_counted = false;
+    sample_many({&ray, 1}, {&sampler, 1}, out, {&is_counted, 1}, rays);
+    return is_counted;
   }
 
- private:
-  /// Where the path stands, and how it got there:
-  /// which part of the light that it may run into now is its own.
-  struct Vertex {
-    Receiver place;  // the last point of the path
-    float pdf = 0;   // of the direction taken from there
-    // Next-event estimation could not have found what this direction finds; true at the camera.
-    bool is_perfect = true;
-  };
+  void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers, std::span<float> out,
+                   std::span<bool> is_counted, std::uint64_t& rays) const override {
+    std::vector<Path> paths;
+    paths.reserve(camera_rays.size());
+    for (std::size_t i = 0; i < camera_rays.size(); ++i) {
+      Path path{camera_rays[i], samplers[i]};
+      path.cone_angle = pixel_angle_;
+      path.index = static_cast<std::uint32_t>(i);
+      paths.push_back(path);
+      is_counted[i] = true;
+    }
 
-  Vec3 radiance(Ray ray, Sampler& sampler, std::uint64_t& rays) const {
-    Vec3 gathered, throughput{1, 1, 1};
-    Vertex last;
-    for (int bounce = 0;; ++bounce) {
-      ++rays;
-      const Hit hit = scene_.closest_hit(ray);
-      if (!hit) return gathered + throughput * background(ray.direction, last);
+    Batch batch(camera_rays.size());
+    while (!paths.empty()) {
+      // Find what each path hits.
+      batch.rays.clear();
+      for (const Path& path : paths) batch.rays.push_back(path.ray);
+      scene_.closest_hit(batch.rays, std::span(batch.hits).first(paths.size()), &serial_executor());
+      rays += paths.size();
 
-      // Light from the surface itself.
-      const Surface surface = surface_at(scene_, ray, hit);
-      const Vec3 emission = lights_.emission(surface, ray.direction);
-      if (max_component(emission) > 0) {
-        const float other = last.is_perfect ? 0 : lights_.pdf(hit, surface, ray.direction, last.place);
-        gathered += throughput * emission * (last.is_perfect ? 1 : power_heuristic(last.pdf, other));
+      // Let each go on from there; those at their end leave a gap.
+      batch.pending.clear();
+      batch.rays.clear();
+      for (std::size_t i = 0; i < paths.size(); ++i)
+        batch.goes_on[i] = advance(paths[i], batch.hits[i], static_cast<std::uint32_t>(i), batch);
+
+      // Find which of the lights that they asked for are in sight.
+      const std::span<bool> is_hidden(batch.is_hidden.get(), batch.rays.size());
+      scene_.any_hit(batch.rays, is_hidden, &serial_executor());
+      rays += batch.rays.size();
+      for (std::size_t i = 0; i < batch.pending.size(); ++i) {
+        const Pending& pending = batch.pending[i];
+        Path& path = paths[pending.path];
+        path.gathered +=
+            pending.light * shadows_.transmittance(batch.rays[i], is_hidden[i], pending.absorption, rays);
       }
-      if (bounce == kMaxBounces) return gathered;
 
-      // Light that one light source sends here, if nothing is in the way.
-      const Material& material = material_of(scene_.description(), surface.material);
-      const Vec3 color = base_color(scene_.description(), material, surface.uv);
-      const Bsdf bsdf(prepared(surface.material), color, surface, -ray.direction);
-      if (bsdf.has_spread()) gathered += throughput * direct_light(surface, bsdf, sampler, rays);
-
-      // Go on in a direction that the surface chooses.
-      const float choice = sampler.next_1d();
-      const std::optional<BsdfSample> next = bsdf.sample(choice, sampler.next_2d());
-      if (!next) return gathered;
-      throughput *= next->weight;
-
-      // Russian roulette: end paths that carry little, and let the others stand for them.
-      if (bounce >= kRouletteAfter) {
-        const float survival = min(max_component(throughput), kMaxSurvival);
-        if (!(sampler.next_1d() < survival)) return gathered;
-        throughput *= 1 / survival;
+      // Hand in those that are done, and close the gaps.
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (batch.goes_on[i])
+          paths[kept++] = paths[i];
+        else
+          store(out.subspan(3 * std::size_t(paths[i].index), 3), paths[i].gathered);
       }
-      last = {{surface.position, bsdf.facing_normal()}, next->pdf, next->is_perfect};
-      ray = surface.spawn(next->direction);
+      paths.erase(paths.begin() + static_cast<std::ptrdiff_t>(kept), paths.end());
     }
   }
 
-  Vec3 background(Vec3 direction, const Vertex& last) const {
-    float sun_pdf = 0;
-    const Vec3 sun = lights_.sun(direction, last.place, sun_pdf);
-    return lights_.dome(direction) + sun * (last.is_perfect ? 1 : power_heuristic(last.pdf, sun_pdf));
+ private:
+  /// The memory of one step of all paths.
+  struct Batch {
+    explicit Batch(std::size_t size) : hits(size), goes_on(size), is_hidden(std::make_unique<bool[]>(size)) {
+      rays.reserve(size);
+      pending.reserve(size);
+    }
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    std::vector<char> goes_on;
+    std::vector<Pending> pending;  // one for each of `rays`
+    std::unique_ptr<bool[]> is_hidden;
+  };
+
+  /// Takes a path from its ray's hit to its next ray. Adds a ray towards a light to the batch. False at the
+  /// path's end.
+  bool advance(Path& path, const Hit& hit, std::uint32_t position, Batch& batch) const {
+    if (max_component(path.absorption) > 0)
+      path.throughput *= beer(path.absorption, hit ? hit.t * length(path.ray.direction) : kInfinity);
+    if (!hit) {
+      path.gathered += path.throughput * background(path.ray.direction, path.last);
+      return false;
+    }
+    const SceneDesc& desc = scene_.description();
+    const Surface surface = surface_at(scene_, path.ray, hit);
+    path.cone_width += path.cone_angle * hit.t;
+
+    // Light from the surface itself.
+    const Vec3 emission = lights_.emission(surface, path.ray.direction);
+    if (max_component(emission) > 0) {
+      const float other =
+          path.last.is_perfect ? 0 : lights_.pdf(hit, surface, path.ray.direction, path.last.place);
+      path.gathered +=
+          path.throughput * emission * (path.last.is_perfect ? 1 : power_heuristic(path.last.pdf, other));
+    }
+    if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) return false;
+
+    // Which material it is, where it is several; and whether the light meets it at all.
+    MaterialId id = surface.material;
+    if (material_of(desc, id).kind == Material::Kind::mix)
+      id = choose_material(desc, id, surface.uv, path.sampler.next_1d());
+    const Material& material = material_of(desc, id);
+    if (is_see_through(material)) {
+      const float opacity = opacity_at(desc, material, surface.uv);
+      if (opacity < 1 && (opacity <= 0 || !(path.sampler.next_1d() < opacity))) {
+        enter(path, material, surface, path.ray.direction);
+        path.ray = surface.spawn(path.ray.direction);
+        return true;
+      }
+    }
+
+    // Light that one light source sends here, if nothing is in the way.
+    const float uv_width =
+        material.color_texture.is_valid() ? path.cone_width * uv_density(scene_, hit) : 0.0f;
+    const Look look = look_at(desc, material, prepared(id), surface.uv, uv_width);
+    const Bsdf bsdf(look, surface, mapped_normal(scene_, hit, surface, material), -path.ray.direction);
+    const Receiver place{surface.position, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal()};
+    if (bsdf.has_spread()) ask_for_light(path, surface, bsdf, place, position, batch);
+
+    // Go on in a direction that the surface chooses.
+    const float choice = path.sampler.next_1d();
+    const std::optional<BsdfSample> next = bsdf.sample(choice, path.sampler.next_2d());
+    if (!next) return false;
+    path.throughput *= next->weight;
+
+    // Russian roulette: end paths that carry little, and let the others stand for them.
+    if (path.bounce >= kRouletteAfter) {
+      const float survival = min(max_component(path.throughput), kMaxSurvival);
+      if (!(path.sampler.next_1d() < survival)) return false;
+      path.throughput *= 1 / survival;
+    }
+    if (!(max_component(path.throughput) > 0)) return false;
+    if (next->is_transmission) enter(path, material, surface, next->direction);
+    path.last = {place, next->pdf, next->is_perfect};
+    if (!next->is_perfect) path.cone_angle = max(path.cone_angle, kScatteredAngle);
+    path.ray = surface.spawn(next->direction);
+    ++path.bounce;
+    return true;
   }
 
-  Vec3 direct_light(const Surface& surface, const Bsdf& bsdf, Sampler& sampler, std::uint64_t& rays) const {
-    const float choice = sampler.next_1d();
-    const auto light = lights_.sample(surface, bsdf.facing_normal(), choice, sampler.next_2d());
-    if (!light) return {};
+  /// Remembers what the path is in, on the other side of a surface.
+  static void enter(Path& path, const Material& material, const Surface& surface, Vec3 direction) {
+    if (material.is_thin) return;
+    path.absorption = dot(direction, surface.normal) < 0 ? material.absorption : material.outer_absorption;
+  }
+
+  Vec3 background(Vec3 direction, const Vertex& last) const {
+    Vec3 sum = lights_.dome(direction);
+    lights_.for_each_far_light(direction, last.place, [&](const Lights::FarLight& light) {
+      sum += light.radiance * (last.is_perfect ? 1 : power_heuristic(last.pdf, light.pdf));
+    });
+    return sum;
+  }
+
+  void ask_for_light(Path& path, const Surface& surface, const Bsdf& bsdf, const Receiver& place,
+                     std::uint32_t position, Batch& batch) const {
+    const float choice = path.sampler.next_1d();
+    const auto light = lights_.sample(surface, place.normal, choice, path.sampler.next_2d());
+    if (!light) return;
     const BsdfValue toward = bsdf.evaluate(light->direction);
-    if (!(max_component(toward.value) > 0)) return {};
-    ++rays;
-    if (scene_.any_hit(light->shadow_ray)) return {};
+    if (!(max_component(toward.value) > 0)) return;
     const float weight = light->is_perfect ? 1 : power_heuristic(light->pdf, toward.pdf);
-    return toward.value * light->radiance * (weight / light->pdf);
+    batch.rays.push_back(light->shadow_ray);
+    batch.pending.push_back({position,
+                             path.throughput * toward.value * light->radiance * (weight / light->pdf),
+                             path.absorption});
   }
 
   const PreparedMaterial& prepared(MaterialId id) const {
@@ -107,14 +235,16 @@ class PathTracer final : public Integrator {
 
   const Scene& scene_;
   Lights lights_;
+  Shadows shadows_;
+  float pixel_angle_;
   std::vector<PreparedMaterial> materials_;
   PreparedMaterial default_material_{Material{}};
 };
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_path_tracer(const Scene& scene, const Camera& camera) {
-  return std::make_unique<PathTracer>(scene, camera);
+std::unique_ptr<Integrator> make_path_tracer(const Scene& scene, const Camera& camera, float pixel_angle) {
+  return std::make_unique<PathTracer>(scene, camera, pixel_angle);
 }
 
 }  // namespace boxwood::render

@@ -1,5 +1,7 @@
 #include "boxwood/render/texture.h"
 
+#include <algorithm>
+
 #include "boxwood/scene/srgb.h"
 
 namespace boxwood::render {
@@ -17,34 +19,124 @@ struct DecodeTables {
 };
 const DecodeTables kDecode;
 
-/// `i` modulo `n`, never negative.
-int wrap(std::int64_t i, int n) {
+/// The column or row that `i` means; -1 for black.
+int wrap(std::int64_t i, int n, Texture::Wrap how) {
+  if (i >= 0 && i < n) return static_cast<int>(i);
+  switch (how) {
+    case Texture::Wrap::clamp:
+      return i < 0 ? 0 : n - 1;
+    case Texture::Wrap::black:
+      return -1;
+    case Texture::Wrap::mirror: {
+      std::int64_t r = i % (2 * std::int64_t(n));
+      if (r < 0) r += 2 * std::int64_t(n);
+      return static_cast<int>(r < n ? r : 2 * std::int64_t(n) - 1 - r);
+    }
+    case Texture::Wrap::repeat:
+      break;
+  }
   const auto r = static_cast<int>(i % n);
   return r < 0 ? r + n : r;
 }
 
-}  // namespace
+struct Rgba {
+  Vec3 color{0, 0, 0};
+  float alpha = 0;
 
-Vec3 texture_color(const Texture& texture, Vec2 uv) {
-  if (texture.texels.empty() || !std::isfinite(uv.x) || !std::isfinite(uv.y)) return {1, 1, 1};
+  Rgba operator*(float f) const { return {color * f, alpha * f}; }
+  Rgba operator+(const Rgba& b) const { return {color + b.color, alpha + b.alpha}; }
+};
 
-  // Texel centers are at halves.
-  // Far out, where floats have no fraction left, the answer only has to be some texel.
-  const double x = (uv.x - std::floor(double(uv.x))) * texture.width - 0.5;
-  const double y = (1 - (uv.y - std::floor(double(uv.y)))) * texture.height - 0.5;
+Rgba texel_of(const Texture& texture, int level, int width, int x, int y) {
+  if (x < 0 || y < 0) return {};
+  if (texture.source) {
+    const std::array<float, 4> t = texture.source->texel(level, x, y);
+    const Vec3 code{t[0], t[1], t[2]};
+    return {texture.is_srgb
+                ? Vec3{linear_from_srgb(code.x), linear_from_srgb(code.y), linear_from_srgb(code.z)}
+                : code,
+            t[3]};
+  }
+  const auto& t = texture.texels[std::size_t(y) * width + x];
+  const float* decode = texture.is_srgb ? kDecode.srgb : kDecode.linear;
+  return {{decode[t[0]], decode[t[1]], decode[t[2]]}, kDecode.linear[t[3]]};
+}
+
+/// The four texels of a level around `uv`, mixed.
+Rgba bilinear(const Texture& texture, int level, Vec2 uv) {
+  const int width = std::max(texture.width >> level, 1), height = std::max(texture.height >> level, 1);
+  // Texel centers are at halves. Far out, where floats have no fraction left, the answer only has to be some
+  // texel; what repeats is brought near first.
+  const auto near = [](double x, Texture::Wrap how) {
+    if (how == Texture::Wrap::repeat) return x - std::floor(x);
+    return std::min(std::max(x, -1e6), 1e6);
+  };
+  const double x = near(uv.x, texture.wrap_u) * width - 0.5;
+  const double y = near(1 - double(uv.y), texture.wrap_v) * height - 0.5;
   const double floor_x = std::floor(x), floor_y = std::floor(y);
   const auto right = static_cast<float>(x - floor_x), down = static_cast<float>(y - floor_y);
-  const int x0 = wrap(std::int64_t(floor_x), texture.width), x1 = wrap(std::int64_t(x0) + 1, texture.width);
-  const int y0 = wrap(std::int64_t(floor_y), texture.height), y1 = wrap(std::int64_t(y0) + 1, texture.height);
-
-  const float* decode = texture.is_srgb ? kDecode.srgb : kDecode.linear;
-  const auto texel = [&](int column, int row) {
-    const auto& t = texture.texels[std::size_t(row) * texture.width + column];
-    return Vec3{decode[t[0]], decode[t[1]], decode[t[2]]};
-  };
-  const Vec3 upper = texel(x0, y0) * (1 - right) + texel(x1, y0) * right;
-  const Vec3 lower = texel(x0, y1) * (1 - right) + texel(x1, y1) * right;
+  const int x0 = wrap(std::int64_t(floor_x), width, texture.wrap_u),
+            x1 = wrap(std::int64_t(floor_x) + 1, width, texture.wrap_u);
+  const int y0 = wrap(std::int64_t(floor_y), height, texture.wrap_v),
+            y1 = wrap(std::int64_t(floor_y) + 1, height, texture.wrap_v);
+  const auto texel = [&](int column, int row) { return texel_of(texture, level, width, column, row); };
+  const Rgba upper = texel(x0, y0) * (1 - right) + texel(x1, y0) * right;
+  const Rgba lower = texel(x0, y1) * (1 - right) + texel(x1, y1) * right;
   return upper * (1 - down) + lower * down;
+}
+
+Texel picture_at(const Texture& texture, Vec2 uv, float width) {
+  if (!texture.source && texture.texels.empty()) return {{1, 1, 1}, 1};
+  // The level whose texels are as wide as the square that is looked at.
+  const int levels = texture.source ? texture.source->levels() : 1;
+  const float texels = width * static_cast<float>(std::max(texture.width, texture.height));
+  const float level = texels > 1 ? min(std::log2(texels), static_cast<float>(levels - 1)) : 0.0f;
+  const int finer = static_cast<int>(level);
+  const float share = level - static_cast<float>(finer);
+  Rgba value = bilinear(texture, finer, uv);
+  if (share > 0) value = value * (1 - share) + bilinear(texture, finer + 1, uv) * share;
+  if (texture.is_inverted) value.color = splat(1) - value.color;
+  return {value.color, value.alpha};
+}
+
+Texel operand_at(const SceneDesc& desc, const Texture::Operand& operand, Vec2 uv, float width) {
+  if (!operand.texture.is_valid()) return {operand.color, 1};
+  const Texel texel = texture_at(desc, operand.texture, uv, width);
+  return {operand.color * texel.color, texel.alpha};
+}
+
+}  // namespace
+
+Texel texture_at(const SceneDesc& desc, TextureId id, Vec2 uv, float width) {
+  const Texture& texture = desc.textures[id.value];
+  const Vec2 st{texture.u_axis.x * uv.x + texture.v_axis.x * uv.y + texture.offset.x,
+                texture.u_axis.y * uv.x + texture.v_axis.y * uv.y + texture.offset.y};
+  if (!std::isfinite(st.x) || !std::isfinite(st.y)) return {{1, 1, 1}, 1};
+  const float scale =
+      std::sqrt(std::fabs(texture.u_axis.x * texture.v_axis.y - texture.u_axis.y * texture.v_axis.x));
+  const float own_width = width * scale;
+
+  switch (texture.kind) {
+    case Texture::Kind::picture:
+      return picture_at(texture, st, own_width);
+    case Texture::Kind::product: {
+      const Texel a = operand_at(desc, texture.first, st, own_width),
+                  b = operand_at(desc, texture.second, st, own_width);
+      return {a.color * b.color, a.alpha * b.alpha};
+    }
+    case Texture::Kind::mix: {
+      const Texel a = operand_at(desc, texture.first, st, own_width),
+                  b = operand_at(desc, texture.second, st, own_width);
+      const Vec3 share = operand_at(desc, texture.amount, st, own_width).color;
+      return {a.color * (splat(1) - share) + b.color * share, a.alpha * (1 - share.x) + b.alpha * share.x};
+    }
+    case Texture::Kind::checkerboard: {
+      const double sum = std::floor(double(st.x)) + std::floor(double(st.y));
+      const bool is_first = sum - 2 * std::floor(sum / 2) == 0;
+      return operand_at(desc, is_first ? texture.first : texture.second, st, own_width);
+    }
+  }
+  return {{1, 1, 1}, 1};
 }
 
 }  // namespace boxwood::render

@@ -66,6 +66,45 @@ void check_shape_boxes(const auto& shapes, const std::string& name) {
   }
 }
 
+void check_textures(const SceneDesc& desc) {
+  for (std::size_t i = 0; i < desc.textures.size(); ++i) {
+    const Texture& texture = desc.textures[i];
+    const std::string name = "texture " + std::to_string(i) + " '" + texture.name + "'";
+    if (texture.kind == Texture::Kind::picture) {
+      if (!texture.source && texture.texels.size() != std::size_t(texture.width) * texture.height)
+        fail(name + " has " + std::to_string(texture.texels.size()) + " texels, expected " +
+             std::to_string(texture.width) + " times " + std::to_string(texture.height));
+      continue;
+    }
+    // Each stands on earlier ones, so none stands on itself.
+    for (const Texture::Operand* operand : {&texture.first, &texture.second, &texture.amount})
+      if (operand->texture.is_valid() && operand->texture.value >= i)
+        fail(name + " is made of texture " + std::to_string(operand->texture.value) +
+             ", expected one that stands before it");
+  }
+}
+
+void check_materials(const SceneDesc& desc) {
+  for (std::size_t i = 0; i < desc.materials.size(); ++i) {
+    const Material& m = desc.materials[i];
+    const std::string name = "material '" + m.name + "'";
+    for (const TextureId id :
+         {m.color_texture, m.emission_texture, m.transmission_color_texture, m.normal_texture,
+          m.specular_color_texture, m.sheen_color_texture, m.roughness_texture.texture,
+          m.opacity_texture.texture, m.metalness_texture.texture, m.transmission_texture.texture,
+          m.specular_texture.texture, m.coat_texture.texture, m.coat_roughness_texture.texture,
+          m.sheen_roughness_texture.texture, m.mix_texture.texture})
+      if (id.is_valid() && id.value >= desc.textures.size())
+        fail(name + " has texture " + std::to_string(id.value) + ", but there are " +
+             std::to_string(desc.textures.size()));
+    if (m.kind != Material::Kind::mix) continue;
+    for (const MaterialId id : {m.first, m.second})
+      if (id.is_valid() && id.value >= i)
+        fail(name + " is a mix of material " + std::to_string(id.value) +
+             ", expected one that stands before it");
+  }
+}
+
 }  // namespace
 
 GeometryId SceneDesc::add(Geometry geometry) {
@@ -164,10 +203,21 @@ void check(const SceneDesc& desc) {
     }
   }
 
-  for (const Material& material : desc.materials)
-    if (material.color_texture.is_valid() && material.color_texture.value >= desc.textures.size())
-      fail("material '" + material.name + "' has texture " + std::to_string(material.color_texture.value) +
-           ", but there are " + std::to_string(desc.textures.size()));
+  check_textures(desc);
+  check_materials(desc);
+  for (std::size_t i = 0; i < desc.environments.size(); ++i) {
+    const Environment& environment = desc.environments[i];
+    const Image& image = environment.radiance;
+    const std::string name = "environment " + std::to_string(i);
+    if (image.channels != 3 || image.width < 1 || image.height < 1 ||
+        image.pixels.size() != std::size_t(image.width) * image.height * 3)
+      fail(name + " has no picture of three channels");
+    try {
+      (void)inverse(environment.world_from_environment);
+    } catch (const std::invalid_argument& error) {
+      fail(name + ": " + error.what());
+    }
+  }
 }
 
 }  // namespace boxwood

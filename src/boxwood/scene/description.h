@@ -16,6 +16,7 @@
 
 #include "boxwood/core/affine.h"
 #include "boxwood/core/id.h"
+#include "boxwood/scene/image.h"
 #include "boxwood/shape/cuboid.h"
 #include "boxwood/shape/disk.h"
 #include "boxwood/shape/quad.h"
@@ -23,6 +24,18 @@
 #include "boxwood/shape/sphere.h"
 
 namespace boxwood {
+
+/// A picture whose pixels are read when they are needed. Any number of threads may ask.
+class PictureSource {
+ public:
+  virtual ~PictureSource() = default;
+  virtual int width() const = 0;
+  virtual int height() const = 0;
+  /// The number of levels: each half as wide and high as the one before, the first is the whole picture.
+  virtual int levels() const = 0;
+  /// The pixel of a level as RGBA codes in [0, 1]; the top row is 0. Precondition: it is inside.
+  virtual std::array<float, 4> texel(int level, int x, int y) const = 0;
+};
 
 /// Triangles that share vertices. `primitive_id` is the position in `indices`.
 struct TriangleMesh {
@@ -50,26 +63,107 @@ struct Instance {
   MaterialId material;  ///< Wins over the geometry's own when given.
 };
 
-/// A texture's pixels, as the codes that the file holds.
+/// What lies at a point of a surface: a picture's pixels, or a pattern made of other textures. A color is
+/// followed by its alpha, which is 1 for all but pictures that have one.
 struct Texture {
+  enum class Kind {
+    picture,       ///< `texels`, or `source` where there is one.
+    product,       ///< first * second.
+    mix,           ///< first * (1 - amount) + second * amount.
+    checkerboard,  ///< first and second in turns, a unit of u and v each.
+  };
+  enum class Wrap { repeat, mirror, clamp, black };
+
+  /// A color times a texture.
+  struct Operand {
+    Vec3 color{1, 1, 1};
+    TextureId texture;  ///< None: the color alone. One that stands earlier in the description.
+  };
+
   std::string name;  ///< Where it came from, for messages.
   int width = 0, height = 0;
   /// Rows from top to bottom, RGBA, encoded as `is_srgb` says.
   std::vector<std::array<std::uint8_t, 4>> texels;
   bool is_srgb = true;
+
+  Kind kind = Kind::picture;
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;  ///< Beyond [0, 1].
+  bool is_inverted = false;                           ///< 1 - color.
+  Operand first, second, amount;
+  /// Texture coordinates from the surface's: (u, v) -> u_axis * u + v_axis * v + offset. For all kinds.
+  Vec2 u_axis{1, 0}, v_axis{0, 1}, offset{0, 0};
+  std::shared_ptr<const PictureSource> source;  ///< A picture whose pixels stay in its file.
 };
 
-/// How a surface treats light. The base color is multiplied by the texture where there is one.
+/// A number at a point of a surface: one channel of a texture.
+struct NumberTexture {
+  enum class Channel { red, green, blue, alpha, mean };
+  TextureId texture;  ///< None: 1 everywhere.
+  Channel channel = Channel::mean;
+};
+
+/// How a surface treats light. Colors and numbers are multiplied by their textures where there are any.
 struct Material {
-  enum class Kind { matte, metal, mirror, glass, plastic };
+  enum class Kind {
+    matte,        ///< Lambert's law.
+    metal,        ///< Rough or smooth, opaque at once.
+    mirror,       ///< Reflects `color` at every angle.
+    glass,        ///< Reflects and refracts, rough or smooth.
+    plastic,      ///< A clear coat over a matte base.
+    translucent,  ///< Matte on both sides: reflects `color`, lets `transmission_color` through.
+    layered,      ///< glTF's: metal, plastic and glass in shares, below a coat and a sheen.
+    mix,          ///< Two other materials in shares.
+    clear,        ///< Not there: light goes straight on. Only `absorption` counts.
+  };
+  /// What `roughness` is. Alpha is the width of GGX.
+  enum class RoughnessScale { alpha, square_root_of_alpha, square_of_alpha, pbrt_3 };
+
   std::string name;
   Kind kind = Kind::matte;
   Vec3 color{0.8f, 0.8f, 0.8f};  ///< Reflectance; for glass the tint of what passes through.
   TextureId color_texture;
-  float roughness = 0;     ///< Metal and plastic: GGX alpha, 0 to 1; 0 is a perfect mirror.
-  float ior = 1.5f;        ///< Glass and plastic: index of refraction.
+  float roughness = 0;     ///< 0 to 1; 0 is perfectly smooth. GGX alpha, unless `roughness_scale` says else.
+  float ior = 1.5f;        ///< Glass, plastic and layered: index of refraction.
   Vec3 emission{0, 0, 0};  ///< Radiance that the front side sends out.
   bool emits_from_both_sides = false;
+  TextureId emission_texture;
+
+  NumberTexture roughness_texture;
+  RoughnessScale roughness_scale = RoughnessScale::alpha;
+  /// Metal: complex index of refraction; where k is 0, `color` is what is reflected head-on instead.
+  Vec3 metal_eta{0, 0, 0}, metal_k{0, 0, 0};
+  Vec3 reflection_color{1, 1, 1};    ///< Glass: the tint of what is reflected.
+  Vec3 transmission_color{0, 0, 0};  ///< Translucent.
+  TextureId transmission_color_texture;
+  bool is_thin = false;  ///< Glass and layered: a pane; light leaves it in the direction that it came from.
+  /// What the inside of a closed surface takes away: radiance falls by exp(-absorption * distance). And what
+  /// the outside does, for surfaces inside of others.
+  Vec3 absorption{0, 0, 0}, outer_absorption{0, 0, 0};
+
+  float opacity = 1;  ///< The share of light that meets the surface at all; the rest goes straight on.
+  NumberTexture opacity_texture;
+  float alpha_cutoff = -1;   ///< From 0 on: opacity is 1 where it reaches this, else 0.
+  TextureId normal_texture;  ///< Normals, by the tangents of the texture coordinates.
+  float normal_scale = 1;
+
+  // Layered.
+  float metalness = 0, transmission = 0;
+  NumberTexture metalness_texture, transmission_texture;
+  float specular = 1;            ///< The share of plastic's reflection.
+  Vec3 specular_color{1, 1, 1};  ///< Its tint head-on.
+  NumberTexture specular_texture;
+  TextureId specular_color_texture;
+  float coat = 0, coat_roughness = 0;  ///< Share of the coat, and its GGX alpha's square root.
+  NumberTexture coat_texture, coat_roughness_texture;
+  Vec3 sheen_color{0, 0, 0};
+  float sheen_roughness = 0;  ///< Its square is the width of the sheen.
+  TextureId sheen_color_texture;
+  NumberTexture sheen_roughness_texture;
+
+  // Mix.
+  MaterialId first, second;  ///< Each stands earlier in the description.
+  float mix_amount = 0.5f;   ///< The share of `second`.
+  NumberTexture mix_texture;
 };
 
 /// Where the picture is taken from. Looks along -z of its own frame, +y up, +x right.
@@ -79,6 +173,15 @@ struct Camera {
   float lens_radius = 0;      ///< 0: pinhole.
   float focus_distance = 1;   ///< Along -z, in world units; used when lens_radius > 0.
   int width = 0, height = 0;  ///< The picture's size that the file asks for; 0: no wish.
+};
+
+/// Light from infinitely far away, by direction: a picture of longitudes and latitudes, all around. Its top
+/// row is +z of its own frame, its bottom row -z; along a row, from the left, it goes from +x by way of +y,
+/// -x and -y back to +x.
+struct Environment {
+  Affine3 world_from_environment;
+  Image radiance;  ///< Three channels.
+  Vec3 scale{1, 1, 1};
 };
 
 /// Light from far away. `zenith` above, `horizon` at eye level, `ground` below, blended smoothly; plus a sun.
@@ -95,6 +198,13 @@ struct PointLight {
   Vec3 position;
   Vec3 intensity;  ///< Radiant intensity: power per solid angle.
 };
+struct SpotLight {
+  Vec3 position;
+  Vec3 direction;          ///< Along its axis; unit length.
+  Vec3 intensity;          ///< Radiant intensity on the axis.
+  float inner_cosine = 1;  ///< Full up to this angle from the axis,
+  float outer_cosine = 0;  ///< none from this one on, and smooth between.
+};
 struct DistantLight {
   Vec3 direction;   ///< Along which the light travels; unit length.
   Vec3 irradiance;  ///< On a surface that faces it.
@@ -106,7 +216,9 @@ struct SceneDesc {
   std::vector<Material> materials;   ///< MaterialId
   std::vector<Texture> textures;     ///< TextureId
   std::vector<PointLight> point_lights;
+  std::vector<SpotLight> spot_lights;
   std::vector<DistantLight> distant_lights;
+  std::vector<Environment> environments;
   std::optional<Camera> camera;  ///< None: the renderer frames the bounds.
   std::optional<Sky> sky;        ///< None: black, or the renderer's plain sky when there is no light at all.
   std::string name;

@@ -1,0 +1,65 @@
+// albedo_table.h: which share of the light does a rough boundary send back in all?
+//
+// A microfacet lobe follows light for one bounce only, and what bounces on between the facets is missing
+// (render/ggx.h). These tables say how much is there, as a function of the angle, by integration over visible
+// normals; what is missing can then be given back: Kulla and Conty, "Revisiting Physically Based Shading at
+// Imageworks", SIGGRAPH courses 2017; Turquin, "Practical multiple scattering compensation for microfacet
+// models", 2019.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "boxwood/render/ggx.h"
+
+namespace boxwood::render {
+
+/// The albedo of a lobe by the cosine of the angle, for one width.
+class AlbedoRow {
+ public:
+  /// The share that leaves in all directions, for light that arrives at this cosine.
+  float at(float cosine) const;
+  /// The mean over a hemisphere of equal light.
+  float mean() const { return mean_; }
+
+ private:
+  friend class AlbedoTable;
+  static constexpr int kAngles = 64;
+  std::array<float, kAngles> values_{};
+  float mean_ = 0;
+};
+
+/// Rows for all widths, or for one.
+class AlbedoTable {
+ public:
+  enum class Lobe {
+    reflection,  ///< Facets that reflect all light.
+    coat,        ///< The reflection at facets of a dielectric, from outside.
+    glass,       ///< Reflection and refraction at facets of a dielectric.
+    sheen,       ///< The lobe of render/sheen.h.
+  };
+
+  /// For GGX of the width `alpha` only, or of all widths when `alpha` is negative. `eta` is the index of
+  /// refraction of the far side over the near side; it has no meaning for a reflection or sheen.
+  AlbedoTable(Lobe lobe, float eta, float alpha);
+
+  /// The albedo at a cosine, for a width that the table was made for.
+  float at(float alpha, float cosine) const;
+  float mean(float alpha) const;
+
+  /// The table of these arguments, made when it is first asked for and then shared. Any thread may ask.
+  static std::shared_ptr<const AlbedoTable> get(Lobe lobe, float eta, float alpha);
+
+ private:
+  /// The rows on both sides of a width, and the share of the second.
+  struct Place {
+    const AlbedoRow &below, &above;
+    float share;
+  };
+  Place place(float alpha) const;
+
+  std::vector<AlbedoRow> rows_;  // one, or for alpha = (i / (n - 1))^2
+};
+
+}  // namespace boxwood::render

@@ -1,0 +1,66 @@
+#include "boxwood/render/uv_frame.h"
+
+#include "boxwood/render/texture.h"
+#include "boxwood/scene/parts.h"
+
+namespace boxwood::render {
+namespace {
+
+/// The edges of the triangle that was hit, from its first corner, in the world and in uv.
+struct Edges {
+  Vec3 first, second;
+  Vec2 first_uv, second_uv;
+  float uv_area;  // signed, doubled
+};
+
+std::optional<Edges> edges_at(const Scene& scene, const Hit& hit) {
+  const Scene::Parts& parts = scene.parts();
+  const auto* mesh = std::get_if<TriangleMesh>(&parts.desc.geometries[hit.geometry_id.value].shapes);
+  if (mesh == nullptr || mesh->uvs.empty()) return std::nullopt;
+  const auto& [i, j, k] = mesh->indices[hit.primitive_id.value];
+  const Affine3& world_from_object = parts.instances[hit.instance_id.value].world_from_object;
+  const Vec2 a = mesh->uvs[i], b = mesh->uvs[j], c = mesh->uvs[k];
+  Edges e{world_from_object.vector(mesh->positions[j] - mesh->positions[i]),
+          world_from_object.vector(mesh->positions[k] - mesh->positions[i]),
+          {b.x - a.x, b.y - a.y},
+          {c.x - a.x, c.y - a.y},
+          0};
+  e.uv_area = e.first_uv.x * e.second_uv.y - e.first_uv.y * e.second_uv.x;
+  return e;
+}
+
+}  // namespace
+
+std::optional<UvFrame> uv_frame(const Scene& scene, const Hit& hit) {
+  const std::optional<Edges> e = edges_at(scene, hit);
+  if (!e || !(std::fabs(e->uv_area) > 0)) return std::nullopt;
+  const UvFrame frame{(e->first * e->second_uv.y - e->second * e->first_uv.y) / e->uv_area,
+                      (e->second * e->first_uv.x - e->first * e->second_uv.x) / e->uv_area};
+  if (!is_finite(frame.along_u) || !is_finite(frame.along_v)) return std::nullopt;
+  return frame;
+}
+
+float uv_density(const Scene& scene, const Hit& hit) {
+  const std::optional<Edges> e = edges_at(scene, hit);
+  if (!e) return 0;
+  const float area = length(cross(e->first, e->second));
+  return area > 0 ? std::sqrt(std::fabs(e->uv_area) / area) : 0;
+}
+
+Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, const Material& material) {
+  if (!material.normal_texture.is_valid()) return surface.shading_normal;
+  const std::optional<UvFrame> frame = uv_frame(scene, hit);
+  if (!frame) return surface.shading_normal;
+
+  // The frame's vectors drawn into the plane of the shading normal, and kept apart by the surface's hand.
+  const Vec3 n = surface.shading_normal;
+  const Vec3 tangent = normalize(frame->along_u - n * dot(n, frame->along_u));
+  const Vec3 side = cross(n, tangent);
+  const Vec3 bitangent = dot(side, frame->along_v) < 0 ? -side : side;
+  const Vec3 code = texture_at(scene.description(), material.normal_texture, surface.uv).color;
+  const float x = (2 * code.x - 1) * material.normal_scale, y = (2 * code.y - 1) * material.normal_scale;
+  const Vec3 mapped = normalize(tangent * x + bitangent * y + n * (2 * code.z - 1));
+  return is_finite(mapped) && dot(mapped, surface.normal) > 0 ? mapped : n;
+}
+
+}  // namespace boxwood::render
