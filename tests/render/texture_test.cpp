@@ -8,6 +8,11 @@
 namespace boxwood::render {
 namespace {
 
+Vec3 texture_color(const Texture& texture, Vec2 uv, float width = 0) {
+  SceneDesc desc;
+  return texture_at(desc, desc.add(texture), uv, width).color;
+}
+
 /// Two by two: red and green above, blue and white below.
 Texture four_colors() {
   Texture texture;
@@ -50,6 +55,87 @@ TEST(Texture, AnyCoordinateGivesSomeColor) {
     EXPECT_TRUE(is_finite(color) && min_component(color) >= 0 && max_component(color) <= 1) << x;
   }
   EXPECT_EQ(texture_color(Texture{}, {0.5f, 0.5f}), (Vec3{1, 1, 1}));
+}
+
+TEST(Texture, BeyondTheEdgeItDoesAsItIsTold) {
+  Texture texture = four_colors();
+  texture.wrap_u = texture.wrap_v = Texture::Wrap::clamp;
+  EXPECT_EQ(texture_color(texture, {-3, 9}), (Vec3{1, 0, 0}));
+  EXPECT_EQ(texture_color(texture, {7, 9}), (Vec3{0, 1, 0}));
+  texture.wrap_u = texture.wrap_v = Texture::Wrap::black;
+  EXPECT_EQ(texture_color(texture, {1.5f, 0.75f}), (Vec3{0, 0, 0}));
+  EXPECT_EQ(texture_color(texture, {0.75f, 0.75f}), (Vec3{0, 1, 0}));
+  texture.wrap_u = texture.wrap_v = Texture::Wrap::mirror;
+  EXPECT_EQ(texture_color(texture, {1.25f, 0.75f}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(texture_color(texture, {-0.25f, -0.25f}), (Vec3{0, 0, 1}));
+  texture.is_inverted = true;
+  EXPECT_EQ(texture_color(texture, {0.25f, 0.75f}), (Vec3{0, 1, 1}));
+}
+
+TEST(Texture, LiesWhereItsAxesSay) {
+  Texture texture = four_colors();
+  texture.u_axis = {0, 1};  // a quarter turn
+  texture.v_axis = {-1, 0};
+  texture.offset = {1, 0};
+  EXPECT_EQ(texture_color(texture, {0.25f, 0.25f}), (Vec3{1, 1, 1}));  // at (0.75, 0.25)
+}
+
+TEST(Texture, ProductsMixesAndCheckerboards) {
+  SceneDesc desc;
+  const TextureId picture = desc.add(four_colors());
+  Texture product;
+  product.kind = Texture::Kind::product;
+  product.first = {{0.5f, 0.5f, 1}, picture};
+  product.second = {{1, 0.5f, 0.25f}, picture};
+  const TextureId product_id = desc.add(product);
+  EXPECT_EQ(texture_at(desc, product_id, {0.75f, 0.25f}).color, (Vec3{0.5f, 0.25f, 0.25f}));
+
+  Texture mix;
+  mix.kind = Texture::Kind::mix;
+  mix.first = {{1, 0, 0}, {}};
+  mix.second = {{0, 0, 1}, {}};
+  mix.amount = {{0.25f, 0.25f, 0.25f}, {}};
+  const TextureId mix_id = desc.add(mix);
+  EXPECT_EQ(texture_at(desc, mix_id, {0, 0}).color, (Vec3{0.75f, 0, 0.25f}));
+
+  Texture checks;
+  checks.kind = Texture::Kind::checkerboard;
+  checks.first = {{1, 1, 1}, picture};
+  checks.second = {{0, 0, 0}, {}};
+  checks.u_axis = {4, 0};
+  checks.v_axis = {0, 4};
+  const TextureId checks_id = desc.add(checks);
+  // The squares are a quarter wide; the picture in them lies as it would alone.
+  EXPECT_EQ(texture_at(desc, checks_id, {0.2f, 0.2f}).color, (Vec3{0, 0, 1}));
+  EXPECT_EQ(texture_at(desc, checks_id, {0.3f, 0.2f}).color, (Vec3{0, 0, 0}));
+  EXPECT_EQ(texture_at(desc, checks_id, {-0.1f, 0.1f}).color, (Vec3{0, 0, 0}));
+  EXPECT_EQ(texture_at(desc, checks_id, {-0.1f, -0.1f}).color,
+            texture_at(desc, picture, {-0.1f, -0.1f}).color);
+}
+
+/// A picture of levels that are each of one grey: 1, 1/2, 1/4.
+class Levels final : public PictureSource {
+ public:
+  int width() const override { return 4; }
+  int height() const override { return 4; }
+  int levels() const override { return 3; }
+  std::array<float, 4> texel(int level, int x, int y) const override {
+    EXPECT_TRUE(x >= 0 && y >= 0 && x < (4 >> level) && y < (4 >> level));
+    const float grey = 1.0f / static_cast<float>(1 << level);
+    return {grey, grey, grey, 1};
+  }
+};
+
+TEST(Texture, WideLooksTakeCoarseLevels) {
+  Texture texture;
+  texture.width = texture.height = 4;
+  texture.is_srgb = false;
+  texture.source = std::make_shared<Levels>();
+  EXPECT_EQ(texture_color(texture, {0.3f, 0.3f}, 0).x, 1);
+  EXPECT_EQ(texture_color(texture, {0.3f, 0.3f}, 0.25f).x, 1);  // one texel
+  EXPECT_EQ(texture_color(texture, {0.3f, 0.3f}, 0.5f).x, 0.5f);
+  EXPECT_NEAR(texture_color(texture, {0.3f, 0.3f}, 0.25f * std::sqrt(2.0f)).x, 0.75f, 1e-6f);
+  EXPECT_EQ(texture_color(texture, {0.3f, 0.3f}, 100).x, 0.25f);
 }
 
 }  // namespace

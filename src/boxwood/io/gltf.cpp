@@ -203,6 +203,14 @@ class Builder {
     } else if (const Vec3 along = normalize(-world_from_node.z);
                light.type == "directional" && is_finite(along)) {
       desc_.distant_lights.push_back({along, color});
+    } else if (light.type == "spot" && is_finite(along)) {
+      const double outer = light.spot.outerConeAngle, inner = light.spot.innerConeAngle;
+      if (!(inner >= 0 && inner < outer && outer <= 1.5707964))
+        file_.fail("light " + std::to_string(index), "its cone goes from " + std::to_string(inner) + " to " +
+                                                         std::to_string(outer) +
+                                                         " radians, expected 0 <= inner < outer <= pi / 2");
+      desc_.spot_lights.push_back(
+          {world_from_node.origin, along, color, float(std::cos(inner)), float(std::cos(outer))});
     } else {
       warn(desc_.warnings, file_, "light " + std::to_string(index),
            "lights of the kind '" + light.type.substr(0, 20) + "' are not supported and left out");

@@ -1,11 +1,12 @@
 #include "boxwood/io/gltf_material.h"
 
+#include <array>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include <tiny_gltf.h>
 
-#include "boxwood/io/color.h"
 #include "boxwood/io/gltf_accessor.h"
 #include "boxwood/io/image.h"
 
@@ -22,14 +23,72 @@ float clamp01(double value) {
   return static_cast<float>(std::fmin(std::fmax(value, 0), 1));
 }
 
-/// A number of a material's extension, or `otherwise`.
-double extension_number(const tinygltf::Material& material, const char* extension, const char* name,
-                        double otherwise) {
-  const auto found = material.extensions.find(extension);
-  if (found == material.extensions.end() || !found->second.IsObject() || !found->second.Has(name))
-    return otherwise;
-  const tinygltf::Value& value = found->second.Get(std::string(name));
-  return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+using Extensions = tinygltf::ExtensionMap;
+
+/// A member of a JSON object; null when there is none.
+const tinygltf::Value* member(const tinygltf::Value* object, const char* name) {
+  if (object == nullptr || !object->IsObject() || !object->Has(name)) return nullptr;
+  return &object->Get(std::string(name));
+}
+const tinygltf::Value* extension(const Extensions& extensions, const char* name) {
+  const auto found = extensions.find(name);
+  return found != extensions.end() && found->second.IsObject() ? &found->second : nullptr;
+}
+
+double number(const tinygltf::Value* object, const char* name, double otherwise) {
+  const tinygltf::Value* value = member(object, name);
+  return value != nullptr && value->IsNumber() ? value->GetNumberAsDouble() : otherwise;
+}
+
+/// Up to `count` numbers of an array; `otherwise` for what is not there.
+std::array<double, 3> numbers(const tinygltf::Value* object, const char* name,
+                              std::array<double, 3> otherwise, std::size_t count) {
+  const tinygltf::Value* value = member(object, name);
+  if (value == nullptr || !value->IsArray() || value->ArrayLen() < count) return otherwise;
+  for (std::size_t i = 0; i < count; ++i)
+    if (const tinygltf::Value& item = value->Get(static_cast<int>(i)); item.IsNumber())
+      otherwise[i] = item.GetNumberAsDouble();
+  return otherwise;
+}
+
+Vec3 color(const tinygltf::Value* object, const char* name, Vec3 otherwise) {
+  const auto [x, y, z] = numbers(object, name, {otherwise.x, otherwise.y, otherwise.z}, 3);
+  return color_of({x, y, z}, otherwise);
+}
+
+/// A texture as a material uses it.
+struct TextureUse {
+  int texture = -1;
+  int uv_set = 0;
+  const tinygltf::Value* transform = nullptr;  // KHR_texture_transform
+};
+
+TextureUse use_of(const auto& info) {
+  return {info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform")};
+}
+TextureUse use_of(const tinygltf::Value* object, const char* name) {
+  const tinygltf::Value* info = member(object, name);
+  if (info == nullptr) return {};
+  return {static_cast<int>(number(info, "index", -1)), static_cast<int>(number(info, "texCoord", 0)),
+          member(member(info, "extensions"), "KHR_texture_transform")};
+}
+
+/// Every texture of a material, whatever for.
+std::vector<TextureUse> textures_of(const tinygltf::Material& m) {
+  std::vector<TextureUse> uses = {use_of(m.pbrMetallicRoughness.baseColorTexture),
+                                  use_of(m.pbrMetallicRoughness.metallicRoughnessTexture),
+                                  use_of(m.normalTexture), use_of(m.emissiveTexture)};
+  constexpr std::pair<const char*, const char*> kOthers[] = {
+      {"KHR_materials_transmission", "transmissionTexture"},
+      {"KHR_materials_clearcoat", "clearcoatTexture"},
+      {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
+      {"KHR_materials_sheen", "sheenColorTexture"},
+      {"KHR_materials_sheen", "sheenRoughnessTexture"},
+      {"KHR_materials_specular", "specularTexture"},
+      {"KHR_materials_specular", "specularColorTexture"}};
+  for (const auto& [extension_name, name] : kOthers)
+    uses.push_back(use_of(extension(m.extensions, extension_name), name));
+  return uses;
 }
 
 /// The picture behind a texture, or -1.
@@ -54,10 +113,8 @@ std::map<int, Texture> read_pictures(const File& file, Executor& executor,
                                      std::vector<std::string>& warnings) {
   std::map<int, Texture> pictures;
   for (const tinygltf::Material& material : file.model->materials)
-    for (const int texture :
-         {material.pbrMetallicRoughness.baseColorTexture.index,
-          material.pbrMetallicRoughness.metallicRoughnessTexture.index, material.emissiveTexture.index})
-      if (const int image = image_of(file, texture); image >= 0) pictures.try_emplace(image);
+    for (const TextureUse& use : textures_of(material))
+      if (const int image = image_of(file, use.texture); image >= 0) pictures.try_emplace(image);
 
   std::vector<std::pair<const int, Texture>*> slots;
   for (auto& entry : pictures) slots.push_back(&entry);
@@ -76,95 +133,168 @@ std::map<int, Texture> read_pictures(const File& file, Executor& executor,
   return pictures;
 }
 
+Texture::Wrap wrap_of(int code) {
+  if (code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Texture::Wrap::clamp;
+  if (code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Texture::Wrap::mirror;
+  return Texture::Wrap::repeat;
+}
+
 class MaterialMaker {
  public:
   MaterialMaker(const File& file, Executor& executor, SceneDesc& desc)
       : file_(file), desc_(desc), pictures_(read_pictures(file, executor, desc.warnings)) {}
 
   Material make(const tinygltf::Material& source, const std::string& where) {
-    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    Material material;
-    material.name = source.name;
-    material.color = color_of(pbr.baseColorFactor, {1, 1, 1});
-    if (pbr.baseColorTexture.index >= 0) {
-      material.color_texture = texture_id(image_of(file_, pbr.baseColorTexture.index), where);
-      if (!material.color_texture.is_valid()) material.color *= 0.5f;
-    }
-
-    // Metalness and roughness; a picture of them counts by its mean.
-    double metallic = pbr.metallicFactor, roughness = pbr.roughnessFactor;
-    if (const Texture* picture = find(image_of(file_, pbr.metallicRoughnessTexture.index))) {
-      Texture linear = *picture;
-      linear.is_srgb = false;
-      const Vec3 mean = average_color(linear);
-      roughness *= mean.y;
-      metallic *= mean.z;
-      warn(desc_.warnings, file_, "",
-           "pictures of metalness and roughness are not supported; their means stand in");
-    }
-    material.ior = static_cast<float>(extension_number(source, "KHR_materials_ior", "ior", 1.5));
-    if (!(material.ior >= 1 && material.ior <= 10)) material.ior = 1.5f;
-    const float alpha = clamp01(roughness) * clamp01(roughness);
-    constexpr double kShines = 0.7;  // above this roughness a coat's highlight cannot be told from the base
-    if (extension_number(source, "KHR_materials_transmission", "transmissionFactor", 0) > 0.5)
-      material.kind = Material::Kind::glass;
-    else if (metallic > 0.5)
-      material.kind = Material::Kind::metal;
-    else
-      material.kind = roughness < kShines ? Material::Kind::plastic : Material::Kind::matte;
-    material.roughness =
-        material.kind == Material::Kind::metal || material.kind == Material::Kind::plastic ? alpha : 0;
-
-    // What it sends out itself.
-    material.emission = color_of(source.emissiveFactor, {0, 0, 0}) *
-                        static_cast<float>(extension_number(source, "KHR_materials_emissive_strength",
-                                                            "emissiveStrength", 1));
-    if (const Texture* picture = find(image_of(file_, source.emissiveTexture.index));
-        picture != nullptr && max_component(material.emission) > 0) {
-      material.emission = material.emission * average_color(*picture);
-      warn(desc_.warnings, file_, "", "pictures of emission are not supported; their means stand in");
-    }
-    if (!is_finite(material.emission) || min_component(material.emission) < 0)
-      file_.fail(where, "the emission is not a finite color");
-    material.emits_from_both_sides = source.doubleSided;
-
-    // Say what is lost.
-    if (source.normalTexture.index >= 0)
-      warn(desc_.warnings, file_, "", "normal maps are not supported and left out");
-    if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE")
-      warn(desc_.warnings, file_, "",
-           "transparency by alpha (" + source.alphaMode.substr(0, 20) + ") is not supported; it is opaque");
-    return material;
+    uv_set_ = source.pbrMetallicRoughness.baseColorTexture.texCoord;
+    where_ = where;
+    Material m;
+    m.name = source.name;
+    m.kind = Material::Kind::layered;
+    m.roughness_scale = Material::RoughnessScale::square_root_of_alpha;
+    take_base(source, m);
+    take_emission(source, m);
+    take_layers(source.extensions, m);
+    take_inside(source.extensions, m);
+    return m;
   }
 
  private:
+  using Channel = NumberTexture::Channel;
+
+  /// Base color, metalness, roughness, opacity and normals: what every material has.
+  void take_base(const tinygltf::Material& source, Material& m) {
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    m.color = color_of(pbr.baseColorFactor, {1, 1, 1});
+    if (const TextureUse use = use_of(pbr.baseColorTexture); use.texture >= 0) {
+      m.color_texture = texture_id(use, true);
+      if (!m.color_texture.is_valid()) m.color *= 0.5f;
+    }
+    m.metalness = clamp01(pbr.metallicFactor);
+    m.roughness = clamp01(pbr.roughnessFactor);
+    const TextureId rough_metal = texture_id(use_of(pbr.metallicRoughnessTexture), false);
+    m.roughness_texture = {rough_metal, Channel::green};
+    m.metalness_texture = {rough_metal, Channel::blue};
+    m.normal_texture = texture_id(use_of(source.normalTexture), false);
+    m.normal_scale = static_cast<float>(source.normalTexture.scale);
+
+    // Opacity is the alpha of the base color, where the material says that it counts.
+    if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
+    m.opacity = pbr.baseColorFactor.size() == 4 ? clamp01(pbr.baseColorFactor[3]) : 1;
+    m.opacity_texture = {m.color_texture, Channel::alpha};
+    if (source.alphaMode == "MASK") m.alpha_cutoff = static_cast<float>(std::fmax(source.alphaCutoff, 0));
+  }
+
+  void take_emission(const tinygltf::Material& source, Material& m) {
+    m.emission = color_of(source.emissiveFactor, {0, 0, 0}) *
+                 static_cast<float>(number(extension(source.extensions, "KHR_materials_emissive_strength"),
+                                           "emissiveStrength", 1));
+    if (!is_finite(m.emission) || min_component(m.emission) < 0)
+      file_.fail(where_, "the emission is not a finite color");
+    m.emits_from_both_sides = source.doubleSided;
+    if (max_component(m.emission) > 0) m.emission_texture = texture_id(use_of(source.emissiveTexture), true);
+  }
+
+  /// Coat, sheen and the strength of the reflection.
+  void take_layers(const Extensions& extensions, Material& m) {
+    const tinygltf::Value* specular = extension(extensions, "KHR_materials_specular");
+    m.specular = clamp01(number(specular, "specularFactor", 1));
+    m.specular_texture = {texture_id(use_of(specular, "specularTexture"), false), Channel::alpha};
+    m.specular_color = color(specular, "specularColorFactor", {1, 1, 1});
+    m.specular_color_texture = texture_id(use_of(specular, "specularColorTexture"), true);
+
+    const tinygltf::Value* coat = extension(extensions, "KHR_materials_clearcoat");
+    m.coat = clamp01(number(coat, "clearcoatFactor", 0));
+    m.coat_texture = {texture_id(use_of(coat, "clearcoatTexture"), false), Channel::red};
+    m.coat_roughness = clamp01(number(coat, "clearcoatRoughnessFactor", 0));
+    m.coat_roughness_texture = {texture_id(use_of(coat, "clearcoatRoughnessTexture"), false), Channel::green};
+    if (member(coat, "clearcoatNormalTexture") != nullptr)
+      warn(desc_.warnings, file_, where_, "normal maps of coats are not supported and left out");
+
+    const tinygltf::Value* sheen = extension(extensions, "KHR_materials_sheen");
+    m.sheen_color = color(sheen, "sheenColorFactor", {0, 0, 0});
+    m.sheen_color_texture = texture_id(use_of(sheen, "sheenColorTexture"), true);
+    m.sheen_roughness = clamp01(number(sheen, "sheenRoughnessFactor", 0));
+    m.sheen_roughness_texture = {texture_id(use_of(sheen, "sheenRoughnessTexture"), false), Channel::alpha};
+  }
+
+  /// What gets through, and what the inside takes away.
+  void take_inside(const Extensions& extensions, Material& m) {
+    m.ior = static_cast<float>(number(extension(extensions, "KHR_materials_ior"), "ior", 1.5));
+    if (!(m.ior >= 1 && m.ior < 10)) m.ior = 1.5f;
+    const tinygltf::Value* transmission = extension(extensions, "KHR_materials_transmission");
+    m.transmission = clamp01(number(transmission, "transmissionFactor", 0));
+    m.transmission_texture = {texture_id(use_of(transmission, "transmissionTexture"), false), Channel::red};
+
+    // Without a thickness the surface is a pane.
+    const tinygltf::Value* volume = extension(extensions, "KHR_materials_volume");
+    m.is_thin = !(number(volume, "thicknessFactor", 0) > 0);
+    const double distance = number(volume, "attenuationDistance", 0);
+    if (m.is_thin || !(distance > 0)) return;
+    const Vec3 left = color(volume, "attenuationColor", {1, 1, 1});
+    const auto absorption = [&](float share) {
+      return static_cast<float>(-std::log(std::fmin(std::fmax(share, 1e-6), 1)) / distance);
+    };
+    m.absorption = {absorption(left.x), absorption(left.y), absorption(left.z)};
+    if (!is_finite(m.absorption)) m.absorption = {0, 0, 0};
+  }
+
   const Texture* find(int image) const {
     const auto found = pictures_.find(image);
     return found != pictures_.end() && !found->second.texels.empty() ? &found->second : nullptr;
   }
 
-  /// The texture of a picture in the scene; each picture is there once.
-  TextureId texture_id(int image, const std::string& where) {
+  /// The scene's texture for one way of using a picture; each is there once. None, with a warning, where
+  /// there is no picture.
+  TextureId texture_id(const TextureUse& use, bool is_color) {
+    if (use.texture < 0) return {};
+    const int image = image_of(file_, use.texture);
     const Texture* picture = find(image);
     if (picture == nullptr) {
       if (image < 0)
-        warn(desc_.warnings, file_, where,
-             "the base color's texture leads to no picture; plain grey stands in");
+        warn(desc_.warnings, file_, where_, "a texture leads to no picture; plain color stands in");
       return {};
     }
-    const auto [entry, is_new] = ids_.try_emplace(image);
-    if (is_new) {
-      Texture texture = *picture;
-      texture.is_srgb = true;  // base colors always are
-      entry->second = desc_.add(std::move(texture));
+    if (use.uv_set != uv_set_)
+      warn(desc_.warnings, file_, where_,
+           "textures by different sets of texture coordinates are not supported; all use that of the base "
+           "color");
+
+    Texture placed;
+    const int sampler = file_.model->textures[use.texture].sampler;
+    if (sampler >= 0 && std::size_t(sampler) < file_.model->samplers.size()) {
+      placed.wrap_u = wrap_of(file_.model->samplers[sampler].wrapS);
+      placed.wrap_v = wrap_of(file_.model->samplers[sampler].wrapT);
     }
-    return entry->second;
+    move_by(use.transform, placed);
+    const auto [entry, is_new] = ids_.try_emplace({image, is_color, int(placed.wrap_u), int(placed.wrap_v),
+                                                   placed.u_axis.x, placed.u_axis.y, placed.v_axis.x,
+                                                   placed.v_axis.y, placed.offset.x, placed.offset.y});
+    if (!is_new) return entry->second;
+    placed.name = picture->name;
+    placed.width = picture->width;
+    placed.height = picture->height;
+    placed.texels = picture->texels;
+    placed.is_srgb = is_color;  // base colors and lights always are, numbers never
+    return entry->second = desc_.add(std::move(placed));
+  }
+
+  /// KHR_texture_transform: scale, turn, then move, in coordinates whose v points down; ours points up.
+  static void move_by(const tinygltf::Value* transform, Texture& texture) {
+    if (transform == nullptr) return;
+    const auto [x, y, unused] = numbers(transform, "offset", {0, 0, 0}, 2);
+    const auto [wide, high, unused_too] = numbers(transform, "scale", {1, 1, 0}, 2);
+    const double angle = number(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+    texture.u_axis = {float(c * wide), float(s * wide)};
+    texture.v_axis = {float(-s * high), float(c * high)};
+    texture.offset = {float(s * high + x), float(1 - c * high - y)};
   }
 
   const File& file_;
   SceneDesc& desc_;
   std::map<int, Texture> pictures_;
-  std::map<int, TextureId> ids_;
+  std::map<std::tuple<int, bool, int, int, float, float, float, float, float, float>, TextureId> ids_;
+  int uv_set_ = 0;     // of the material that is being made
+  std::string where_;  // its place, for messages
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
-// gltf_material.h: which of our materials is nearest to one of glTF's?
+// gltf_material.h: what are glTF's materials made of?
 //
-// glTF knows one surface, by base color, metalness and roughness (specification, section 3.9 and appendix B).
-// Ours is a metal where it is mostly metal, else a plastic where it is smooth enough to shine, else matte.
+// glTF knows one surface, in layers: base color, metalness and roughness (specification, section 3.9 and
+// appendix B), and extensions for emission, glass, coats, cloth and the strength of reflections. Ours of the
+// kind `layered` follows it part by part. Ambient occlusion is left out: paths find out themselves what is
+// shut in.
 #pragma once
 
 #include "boxwood/core/parallel.h"
@@ -10,8 +12,8 @@
 
 namespace boxwood::io::gltf {
 
-/// Adds all materials of the file, in order, and the pictures of their base colors; warns of what is lost. A
-/// picture that is missing or broken is a warning too.
+/// Adds all materials of the file, in order, and their pictures; warns of what is lost. A picture that is
+/// missing or broken is a warning too.
 void add_materials(const File& file, Executor& executor, SceneDesc& desc);
 
 /// Which set of texture coordinates a material's base color needs.

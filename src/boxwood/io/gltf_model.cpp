@@ -14,9 +14,11 @@
 namespace boxwood::io::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 5> kSupportedExtensions = {
-    "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_transmission"};
+constexpr std::array<std::string_view, 10> kSupportedExtensions = {
+    "KHR_lights_punctual",     "KHR_mesh_quantization",      "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_volume",
+    "KHR_materials_clearcoat", "KHR_materials_sheen",        "KHR_materials_specular",
+    "KHR_texture_transform"};
 
 /// A library's message in one line that is not too long (tinygltf quotes whole data URIs).
 std::string one_line(std::string text) {

@@ -3,14 +3,16 @@
 // Directives come one by one from the parser and change the state; each Shape takes from the state what
 // applies to it. PLY meshes and pictures are only noted on the way, and read in parallel at the end.
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <tuple>
 
 #include "boxwood/io/formats.h"
-#include "boxwood/io/image.h"
 #include "boxwood/io/pbrt_camera.h"
+#include "boxwood/io/pbrt_spectrum.h"
 #include "boxwood/io/pbrt_state.h"
+#include "boxwood/io/picture_cache.h"
 
 namespace boxwood::io {
 namespace pbrt {
@@ -22,7 +24,7 @@ class Interpreter {
       : executor_(executor),
         warnings_(desc_.warnings),
         parser_(path),
-        textures_(parser_, warnings_),
+        textures_(parser_, warnings_, desc_),
         materials_(textures_, parser_, warnings_) {}
 
   SceneDesc run() {
@@ -71,9 +73,26 @@ class Interpreter {
   void begin_object(const Directive& directive);
   void place_object(const Directive& directive);
   Instance put_into_scene(PlacedShape& shape);
-  MaterialId material_id(int material, const std::optional<Glow>& glow);
-  TextureId texture_id(int picture);
+  /// All that makes one of our materials: pbrt's, and what stands beside it.
+  struct MaterialKey {
+    int material;
+    Glow glow;
+    Coverage coverage;
+    Vec3 inside, outside;  // absorption
+    auto tuple() const {
+      return std::tuple(material, glow.radiance.x, glow.radiance.y, glow.radiance.z, glow.is_two_sided,
+                        coverage.opacity.number, coverage.opacity.texture.texture.value, inside.x, inside.y,
+                        inside.z, outside.x, outside.y, outside.z);
+    }
+    bool operator<(const MaterialKey& other) const { return tuple() < other.tuple(); }
+  };
+
+  void define_medium(const Directive& directive);
+  void set_media(const Directive& directive);
+  MaterialId material_id(const MaterialKey& key);
   void read_files();
+  std::vector<char> shown_textures();
+  void drop_hidden_textures();
   void read_mesh(const MeshFile& file);
 
   Executor& executor_;
@@ -87,9 +106,8 @@ class Interpreter {
 
   std::map<std::string, Object, std::less<>> objects_;
   Object* open_object_ = nullptr;
-  std::map<std::tuple<int, float, float, float, bool>, MaterialId> material_ids_;
-  std::map<int, TextureId> texture_ids_;
-  std::vector<int> picture_of_texture_;  // by TextureId: position in textures_.pictures()
+  std::map<MaterialKey, MaterialId> material_ids_;
+  std::map<std::string, Vec3, std::less<>> media_;  // by name: absorption
   std::vector<MeshFile> mesh_files_;
 };
 
@@ -164,8 +182,10 @@ void Interpreter::interpret(Directive& directive) {
     set_camera(directive);
   } else if (name == "Film") {
     size_ = picture_size(directive);
-  } else if (name == "MakeNamedMedium" || name == "MediumInterface") {
-    warnings_.once(directive.place, "participating media (" + name + ") are not supported and left out");
+  } else if (name == "MakeNamedMedium") {
+    define_medium(directive);
+  } else if (name == "MediumInterface") {
+    set_media(directive);
   }
   // What is left (samplers, integrators, filters, options, WorldEnd) says how to render, not what.
 }
@@ -186,7 +206,10 @@ void Interpreter::add_shape(const Directive& directive) {
                    "area lights inside of objects are not supported; the shapes do not glow");
   const std::optional<Glow> no_glow;
   const std::optional<Glow>& glow = is_in_object ? no_glow : now.glow;
-  PlacedShape shape{std::move(*value), material_id(now.material, glow), now.frame, directive.place};
+  const MaterialKey key{now.material, glow.value_or(Glow{}), read_coverage(directive, textures_),
+                        now.inner_absorption, now.outer_absorption};
+  PlacedShape shape{std::move(*value), material_id(key), now.frame, directive.place};
+  directive.parameters.warn_unused(directive.subject(), warnings_);
   if (is_in_object)
     open_object_->shapes.push_back(std::move(shape));
   else
@@ -233,26 +256,59 @@ Instance Interpreter::put_into_scene(PlacedShape& shape) {
   return {id, shape.value.placement, {}};
 }
 
-MaterialId Interpreter::material_id(int material, const std::optional<Glow>& glow) {
-  const Glow g = glow.value_or(Glow{});
-  const auto [entry, is_new] =
-      material_ids_.try_emplace({material, g.radiance.x, g.radiance.y, g.radiance.z, g.is_two_sided});
-  if (!is_new) return entry->second;
-  const MaterialValue& value = materials_.values()[material];
-  Material made = value.material;
-  made.emission = g.radiance;
-  made.emits_from_both_sides = g.is_two_sided;
-  if (value.picture >= 0) made.color_texture = texture_id(value.picture);
-  return entry->second = desc_.add(std::move(made));
+/// A medium that takes light away and does not scatter it; scattering is left out.
+void Interpreter::define_medium(const Directive& directive) {
+  const ParameterList& parameters = directive.parameters;
+  const std::string& name = directive.strings[0];
+  const std::string kind = parameters.string("type", "homogeneous");
+  Vec3& absorption = media_[name] = {0, 0, 0};
+  if (kind != "homogeneous") {
+    for (const Parameter& parameter : parameters.all()) parameter.is_used = true;
+    warnings_.once(directive.place,
+                   "media of the kind " + in_quotes(kind) + " are not supported and left out");
+    return;
+  }
+  const float scale = parameters.number("scale", 1);
+  absorption = color_of(parameters, "sigma_a", {.0011f, .0024f, .014f}, parser_, warnings_) * scale;
+  absorption = max(absorption, Vec3{0, 0, 0});
+  const Vec3 scattering = color_of(parameters, "sigma_s", {2.55f, 3.21f, 3.77f}, parser_, warnings_);
+  parameters.ignore({"g", "Le", "Lescale"});
+  parameters.warn_unused("MakeNamedMedium " + in_quotes(name), warnings_);
+  if (max_component(scattering) > 0)
+    warnings_.once(directive.place, "scattering in media is not supported; they only absorb");
 }
 
-TextureId Interpreter::texture_id(int picture) {
-  const auto [entry, is_new] = texture_ids_.try_emplace(picture);
-  if (is_new) {
-    entry->second = desc_.add(Texture{});
-    picture_of_texture_.push_back(picture);
+void Interpreter::set_media(const Directive& directive) {
+  const auto absorption = [&](const std::string& name) {
+    if (name.empty()) return Vec3{0, 0, 0};
+    const auto found = media_.find(name);
+    if (found != media_.end()) return found->second;
+    warnings_.once(directive.place, "there is no medium of the name " + in_quotes(name) + "; it is left out");
+    return Vec3{0, 0, 0};
+  };
+  // One name stands for both sides.
+  state_.now.inner_absorption = absorption(directive.strings.front());
+  state_.now.outer_absorption = absorption(directive.strings.back());
+}
+
+MaterialId Interpreter::material_id(const MaterialKey& key) {
+  const auto found = material_ids_.find(key);
+  if (found != material_ids_.end()) return found->second;
+  const MaterialValue& value = materials_.values()[key.material];
+  Material made = value.material;
+  if (made.kind == Material::Kind::mix) {
+    made.first = material_id({value.first, {}, {}, key.inside, key.outside});
+    made.second = material_id({value.second, {}, {}, key.inside, key.outside});
   }
-  return entry->second;
+  made.emission = key.glow.radiance;
+  made.emits_from_both_sides = key.glow.is_two_sided;
+  made.absorption = key.inside;
+  made.outer_absorption = key.outside;
+  if (key.coverage.is_given) {
+    made.opacity = key.coverage.opacity.number;
+    made.opacity_texture = key.coverage.opacity.texture;
+  }
+  return material_ids_[key] = desc_.add(std::move(made));
 }
 
 void Interpreter::read_mesh(const MeshFile& file) {
@@ -266,21 +322,40 @@ void Interpreter::read_mesh(const MeshFile& file) {
   desc_.geometries[file.geometry.value].shapes = std::move(mesh);
 }
 
+/// Which textures some material shows in the end, by itself or in another.
+std::vector<char> Interpreter::shown_textures() {
+  std::vector<char> is_shown(desc_.textures.size());
+  for (Material& material : desc_.materials)
+    for_each_texture(material, [&](TextureId& id) {
+      if (id.is_valid()) is_shown[id.value] = true;
+    });
+  for (std::size_t i = desc_.textures.size(); i-- > 0;)
+    if (is_shown[i])
+      for (const Texture::Operand* part :
+           {&desc_.textures[i].first, &desc_.textures[i].second, &desc_.textures[i].amount})
+        if (part->texture.is_valid()) is_shown[part->texture.value] = true;
+  return is_shown;
+}
+
 void Interpreter::read_files() {
+  const std::vector<char> is_shown = shown_textures();
+  std::map<std::filesystem::path, std::size_t> place_of_file;
+  std::vector<std::filesystem::path> pictures;
+  for (const Picture& picture : textures_.pictures())
+    if (is_shown[picture.texture.value] && place_of_file.try_emplace(picture.path, pictures.size()).second)
+      pictures.push_back(picture.path);
+
   // All files at once; what goes wrong is kept by file,
   // so that the message does not depend on who came first.
-  const std::size_t meshes = mesh_files_.size(), files = meshes + picture_of_texture_.size();
+  const std::size_t meshes = mesh_files_.size(), files = meshes + pictures.size();
   std::vector<std::exception_ptr> errors(files);
+  std::vector<Texture> found(pictures.size());
   parallel_for(executor_, 0, files, 1, [&](std::size_t i) {
     try {
-      if (i < meshes) {
+      if (i < meshes)
         read_mesh(mesh_files_[i]);
-      } else {
-        const Picture& picture = textures_.pictures()[picture_of_texture_[i - meshes]];
-        Texture& texture = desc_.textures[i - meshes];
-        texture = read_texture(picture.path);
-        if (picture.is_linear) texture.is_srgb = false;
-      }
+      else
+        found[i - meshes] = open_texture(pictures[i - meshes]);
     } catch (...) {
       errors[i] = std::current_exception();
     }
@@ -288,28 +363,58 @@ void Interpreter::read_files() {
   for (std::size_t i = 0; i < meshes; ++i)
     if (errors[i]) std::rethrow_exception(errors[i]);
 
-  // Go on without the pictures that cannot be read: their materials are grey.
-  std::vector<Texture> readable;
-  std::vector<TextureId> new_ids(desc_.textures.size());
-  for (std::size_t i = 0; i < desc_.textures.size(); ++i) {
-    if (!errors[meshes + i]) {
-      new_ids[i] = TextureId(readable.size());
-      readable.push_back(std::move(desc_.textures[i]));
+  // Give each texture its picture; go on without those that cannot be read: they are grey.
+  std::vector<char> is_missing(desc_.textures.size());
+  for (const Picture& picture : textures_.pictures()) {
+    if (!is_shown[picture.texture.value]) continue;
+    const std::size_t place = place_of_file.at(picture.path);
+    Texture& texture = desc_.textures[picture.texture.value];
+    if (errors[meshes + place]) {
+      // In products and mixes, grey; elsewhere see below.
+      texture.kind = Texture::Kind::product;
+      texture.first.color = splat(0.5f);
+      is_missing[picture.texture.value] = true;
+      try {
+        std::rethrow_exception(errors[meshes + place]);
+      } catch (const std::exception& error) {
+        warnings_.once(picture.place, std::string("the texture cannot be read (") + error.what() +
+                                          "); plain grey stands in");
+      }
       continue;
     }
-    try {
-      std::rethrow_exception(errors[meshes + i]);
-    } catch (const std::exception& error) {
-      warnings_.once(textures_.pictures()[picture_of_texture_[i]].place,
-                     std::string("the texture cannot be read (") + error.what() + "); plain grey stands in");
-    }
+    const Texture& file = found[place];
+    texture.width = file.width;
+    texture.height = file.height;
+    texture.texels = file.texels;
+    texture.source = file.source;
+    texture.is_srgb = file.is_srgb && !picture.is_linear;
   }
-  desc_.textures = std::move(readable);
-  for (Material& material : desc_.materials)
-    if (material.color_texture.is_valid()) {
-      material.color_texture = new_ids[material.color_texture.value];
-      if (!material.color_texture.is_valid()) material.color *= 0.5f;
-    }
+  for (Material& material : desc_.materials) {
+    if (material.color_texture.is_valid() && is_missing[material.color_texture.value]) material.color *= 0.5f;
+    for_each_texture(material, [&](TextureId& id) {
+      if (id.is_valid() && is_missing[id.value]) id = {};
+    });
+  }
+  drop_hidden_textures();
+}
+
+/// Takes out the textures that no material shows; the others keep their order.
+void Interpreter::drop_hidden_textures() {
+  const std::vector<char> is_shown = shown_textures();
+  std::vector<TextureId> new_ids(desc_.textures.size());
+  std::vector<Texture> shown;
+  for (std::size_t i = 0; i < desc_.textures.size(); ++i) {
+    if (!is_shown[i]) continue;
+    new_ids[i] = TextureId(shown.size());
+    shown.push_back(std::move(desc_.textures[i]));
+  }
+  const auto rename = [&](TextureId& id) {
+    if (id.is_valid()) id = new_ids[id.value];
+  };
+  for (Texture& texture : shown)
+    for (Texture::Operand* part : {&texture.first, &texture.second, &texture.amount}) rename(part->texture);
+  for (Material& material : desc_.materials) for_each_texture(material, rename);
+  desc_.textures = std::move(shown);
 }
 
 }  // namespace

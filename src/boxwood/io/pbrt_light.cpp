@@ -1,50 +1,55 @@
 #include "boxwood/io/pbrt_light.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "boxwood/io/image.h"
+#include "boxwood/io/environment_map.h"
 #include "boxwood/io/pbrt_spectrum.h"
 
 namespace boxwood::io::pbrt {
 namespace {
 
-/// The mean radiance of an environment map. A map that is twice as wide as high holds latitudes (version 3),
-/// whose rows shrink towards the poles; a square one (version 4) keeps areas.
-Vec3 average_environment(const Image& image) {
-  const bool keeps_areas = image.width == image.height;
-  double sum[3] = {0, 0, 0}, whole = 0;
-  for (int y = 0; y < image.height; ++y) {
-    const double weight = keeps_areas ? 1 : std::sin((y + 0.5) / image.height * 3.14159265358979323846);
-    for (int x = 0; x < image.width; ++x) {
-      const float* pixel = image.at(x, y);
-      for (int c = 0; c < 3; ++c) {
-        const float value = pixel[image.channels >= 3 ? c : 0];
-        if (value > 0 && value < kInfinity) sum[c] += weight * value;
-      }
-      whole += weight;
-    }
-  }
-  return whole > 0 ? Vec3{float(sum[0] / whole), float(sum[1] / whole), float(sum[2] / whole)}
-                   : Vec3{0, 0, 0};
-}
-
-/// Light from everywhere: a sky of one color. Several of them add up.
-void add_infinite(const Directive& directive, Vec3 radiance, const Parser& parser, Warnings& warnings,
-                  SceneDesc& desc) {
+/// Light from everywhere: a picture of the surroundings, or a sky of one color. Several skies add up.
+void add_infinite(const Directive& directive, Vec3 radiance, const Affine3& world_from_light,
+                  const Parser& parser, Warnings& warnings, SceneDesc& desc) {
   const ParameterList& parameters = directive.parameters;
   const std::string file = parameters.string("mapname", parameters.string("filename", ""));
   if (!file.empty()) {
-    std::string message =
-        "environment maps are not supported; the mean color of " + in_quotes(file) + " stands in";
     try {
-      radiance = radiance * average_environment(read_image(parser.resolve(file)));
+      std::size_t mended = 0;
+      Environment environment{world_from_light, read_environment(parser.resolve(file), mended), radiance};
+      if (mended > 0)
+        warnings.once(directive.place, "the environment map " + in_quotes(file) + " has " +
+                                           std::to_string(mended) +
+                                           " pixels that are negative or not finite; they are black");
+      desc.environments.push_back(std::move(environment));
+      return;
     } catch (const FileError& error) {
-      message = std::string("the environment map cannot be read (") + error.what() + "); white stands in";
+      warnings.once(directive.place, std::string("the environment map cannot be read (") + error.what() +
+                                         "); white stands in");
     }
-    warnings.once(directive.place, message);
   }
   if (!desc.sky) desc.sky.emplace();
   for (Vec3* color : {&desc.sky->zenith, &desc.sky->horizon, &desc.sky->ground}) *color += radiance;
+}
+
+void add_spot(const Directive& directive, const Affine3& world_from_light, Vec3 intensity, SceneDesc& desc) {
+  const ParameterList& parameters = directive.parameters;
+  const Vec3 from = parameters.vector("from", {0, 0, 0}), to = parameters.vector("to", {0, 0, 1});
+  const float angle = parameters.number("coneangle", 30), soft = parameters.number("conedeltaangle", 5);
+  if (!(angle > 0 && angle <= 180) || !(soft >= 0))
+    fail(directive.place, "the spot light has a cone of " + std::to_string(angle) + " degrees, soft over " +
+                              std::to_string(soft) + ", expected more than 0 to 180, and at least 0");
+  constexpr float kDegree = 3.14159265358979f / 180;
+  SpotLight light;
+  light.position = world_from_light.point(from);
+  light.direction = normalize(world_from_light.vector(to - from));
+  if (!is_finite(light.direction))
+    fail(directive.place, "the spot light has no direction: \"from\" and \"to\" are the same");
+  light.intensity = intensity;
+  light.outer_cosine = std::cos(angle * kDegree);
+  light.inner_cosine = std::cos(std::max(angle - soft, 0.0f) * kDegree);
+  desc.spot_lights.push_back(light);
 }
 
 }  // namespace
@@ -85,8 +90,10 @@ void add_light(const Directive& directive, const Affine3& world_from_light, cons
     if (!is_finite(direction))
       fail(directive.place, "the distant light has no direction: \"from\" and \"to\" are the same");
     desc.distant_lights.push_back({direction, strength("L")});
+  } else if (kind == "spot") {
+    add_spot(directive, world_from_light, strength("I"), desc);
   } else if (kind == "infinite") {
-    add_infinite(directive, strength("L"), parser, warnings, desc);
+    add_infinite(directive, strength("L"), world_from_light, parser, warnings, desc);
   } else {
     warnings.once(directive.place,
                   "lights of the kind " + in_quotes(kind) + " are not supported and left out");

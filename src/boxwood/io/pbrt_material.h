@@ -1,23 +1,23 @@
 // pbrt_material.h: which of our materials is nearest to one of pbrt's?
 //
-// The two versions of the format know some twenty kinds of surface, the renderer five. Each kind is mapped to
-// the one that looks most like it; what that loses is said in a warning.
+// The two versions of the format know some twenty kinds of surface. Each is mapped to the one of ours that
+// looks most like it; what that loses is said in a warning.
 #pragma once
 
 #include "boxwood/io/pbrt_texture.h"
 
 namespace boxwood::io::pbrt {
 
-/// One of our materials whose picture is not read yet.
+/// One of our materials, not in the scene yet.
 struct MaterialValue {
   Material material;
-  int picture = -1;  ///< Position in Textures::pictures(), or none.
+  int first = -1, second = -1;  ///< Of a mix: positions in Materials::values().
 };
 
 /// Every material that the scene has named or used so far.
 class Materials {
  public:
-  Materials(const Textures& textures, const Parser& parser, Warnings& warnings);
+  Materials(Textures& textures, const Parser& parser, Warnings& warnings);
 
   /// Takes a Material directive; returns the position of its material in values().
   int add(const Directive& directive);
@@ -32,14 +32,29 @@ class Materials {
 
  private:
   MaterialValue evaluate(const std::string& kind, const Directive& directive) const;
-  float roughness(const ParameterList& parameters, float otherwise, bool is_version_3) const;
+  void set_roughness(Material& material, const ParameterList& parameters, float otherwise,
+                     bool is_version_3) const;
+  MaterialValue mix(const Directive& directive) const;
+  MaterialValue uber(const Directive& directive, float ior) const;
+  MaterialValue disney(const Directive& directive, float ior) const;
+  void set_normal_map(Material& material, const Directive& directive);
+  void set_metal(Material& material, const ParameterList& parameters, const std::string& prefix) const;
   Vec3 metal_color(const ParameterList& parameters, const std::string& prefix) const;
 
-  const Textures& textures_;
+  Textures& textures_;
   const Parser& parser_;
   Warnings& warnings_;
   std::vector<MaterialValue> values_;
   std::map<std::string, int, std::less<>> named_;
 };
+
+/// Which share of a shape is there at all.
+struct Coverage {
+  bool is_given = false;
+  NumberValue opacity;
+};
+
+/// The "alpha" of a Shape directive.
+Coverage read_coverage(const Directive& shape, const Textures& textures);
 
 }  // namespace boxwood::io::pbrt

@@ -1,6 +1,10 @@
 #include "boxwood/io/pbrt_shape.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "boxwood/io/loop_subdivision.h"
+#include "boxwood/io/revolution.h"
 
 namespace boxwood::io::pbrt {
 namespace {
@@ -72,10 +76,6 @@ TriangleMesh bilinear_mesh(const Directive& directive) {
   return std::move(arrays.mesh);
 }
 
-bool differs(float a, float b) {
-  return std::fabs(a - b) > 1e-4f * std::fabs(b);
-}
-
 /// A sphere or a disk: baked by `baked(m, scale)` where m keeps it round, else `plain` placed by an instance.
 template <class Round, class Bake>
 ShapeValue round_shape(const Round& plain, const Affine3& m, const Bake& baked) {
@@ -89,37 +89,92 @@ ShapeValue round_shape(const Round& plain, const Affine3& m, const Bake& baked) 
   return value;
 }
 
-ShapeValue sphere(const Directive& directive, const ShapeFrame& frame, Warnings& warnings) {
-  const ParameterList& parameters = directive.parameters;
-  const float radius = parameters.number("radius", 1);
-  if (!(radius > 0))
-    fail(directive.place, "the sphere's radius is " + std::to_string(radius) + ", expected more than 0");
-  if (differs(parameters.number("phimax", 360), 360) ||
-      parameters.number("zmin", -radius) > -radius * 0.9999f ||
-      parameters.number("zmax", radius) < radius * 0.9999f)
-    warnings.once(directive.place,
-                  "parts of spheres (\"zmin\", \"zmax\", \"phimax\") are not supported; they are whole");
-  if (frame.is_reversed)
-    warnings.once(directive.place, "ReverseOrientation of spheres is not supported; their front is outside");
-  const Affine3& m = frame.world_from_object;
-  return round_shape(Sphere{{0, 0, 0}, radius}, m, [&](float scale) {
-    return Sphere{m.origin, radius * scale};
-  });
+constexpr float kDegree = 3.14159265358979f / 180;
+constexpr int kProfileSteps = 48;  // of a quarter or a half circle
+
+/// "phimax" in radians.
+float turn_of(const Directive& directive) {
+  const float phi = directive.parameters.number("phimax", 360);
+  if (!(phi > 0 && phi <= 360))
+    fail(directive.place, "\"phimax\" is " + std::to_string(phi) + ", expected more than 0 and at most 360");
+  return phi * kDegree;
 }
 
-ShapeValue disk(const Directive& directive, const ShapeFrame& frame, Warnings& warnings) {
-  const ParameterList& parameters = directive.parameters;
-  const float radius = parameters.number("radius", 1), height = parameters.number("height", 0);
+float radius_of(const Directive& directive, const char* what) {
+  const float radius = directive.parameters.number("radius", 1);
   if (!(radius > 0))
-    fail(directive.place, "the disk's radius is " + std::to_string(radius) + ", expected more than 0");
-  if (differs(parameters.number("phimax", 360), 360) || parameters.number("innerradius", 0) > 0)
-    warnings.once(directive.place,
-                  "parts of disks (\"innerradius\", \"phimax\") are not supported; they are whole");
-  const Disk plain{{0, 0, height}, {0, 0, frame.is_reversed ? -1.0f : 1.0f}, radius};
-  const Affine3& m = frame.world_from_object;
-  return round_shape(plain, m, [&](float scale) {
-    return Disk{m.point(plain.center), m.vector(plain.facing), radius * scale};
-  });
+    fail(directive.place,
+         std::string(what) + "'s radius is " + std::to_string(radius) + ", expected more than 0");
+  return radius;
+}
+
+std::optional<ShapeValue> sphere(const Directive& directive, const ShapeFrame& frame, TriangleMesh& part) {
+  const ParameterList& parameters = directive.parameters;
+  const float radius = radius_of(directive, "the sphere"), turn = turn_of(directive);
+  const float low = std::clamp(parameters.number("zmin", -radius), -radius, radius),
+              high = std::clamp(parameters.number("zmax", radius), -radius, radius);
+  const bool is_whole = low <= -radius * 0.9999f && high >= radius * 0.9999f && turn > 359.96f * kDegree;
+  // A sphere of ours shines outwards and knows no other way round.
+  if (is_whole && !frame.is_reversed) {
+    const Affine3& m = frame.world_from_object;
+    return round_shape(Sphere{{0, 0, 0}, radius}, m, [&](float scale) {
+      return Sphere{m.origin, radius * scale};
+    });
+  }
+  if (!(low < high)) fail(directive.place, "the sphere has no part between \"zmin\" and \"zmax\"");
+  const float first = std::asin(low / radius), last = std::asin(high / radius);
+  part = revolve(
+      [&](float v) {
+        const float angle = first + (last - first) * v, c = std::cos(angle), s = std::sin(angle);
+        return ProfilePoint{radius * c, radius * s, c, s};
+      },
+      turn, kProfileSteps);
+  return std::nullopt;
+}
+
+std::optional<ShapeValue> disk(const Directive& directive, const ShapeFrame& frame, TriangleMesh& part) {
+  const ParameterList& parameters = directive.parameters;
+  const float radius = radius_of(directive, "the disk"), turn = turn_of(directive);
+  const float height = parameters.number("height", 0), inner = parameters.number("innerradius", 0);
+  if (!(inner >= 0 && inner < radius))
+    fail(directive.place, "the disk's inner radius is " + std::to_string(inner) +
+                              ", expected at least 0 and less than the radius");
+  if (inner == 0 && turn > 359.96f * kDegree) {
+    const Disk plain{{0, 0, height}, {0, 0, frame.is_reversed ? -1.0f : 1.0f}, radius};
+    const Affine3& m = frame.world_from_object;
+    return round_shape(plain, m, [&](float scale) {
+      return Disk{m.point(plain.center), m.vector(plain.facing), radius * scale};
+    });
+  }
+  part = revolve([&](float v) { return ProfilePoint{radius + (inner - radius) * v, height, 0, 1}; }, turn, 1);
+  return std::nullopt;
+}
+
+/// Cylinders, cones and paraboloids along z.
+TriangleMesh quadric(const std::string& kind, const Directive& directive) {
+  const ParameterList& parameters = directive.parameters;
+  const float radius = radius_of(directive, "the shape"), turn = turn_of(directive);
+  if (kind == "cone") {
+    const float height = parameters.number("height", 1);
+    return revolve(
+        [&](float v) {
+          return ProfilePoint{radius * (1 - v), height * v, height, radius};
+        },
+        turn, 1);
+  }
+  const float low = parameters.number("zmin", kind == "cylinder" ? -1.0f : 0.0f),
+              high = parameters.number("zmax", 1);
+  if (kind == "cylinder")
+    return revolve([&](float v) { return ProfilePoint{radius, low + (high - low) * v, 1, 0}; }, turn, 1);
+  if (!(low >= 0 && low < high))
+    fail(directive.place, "the paraboloid reaches from \"zmin\" " + std::to_string(low) + " to \"zmax\" " +
+                              std::to_string(high) + ", expected 0 <= zmin < zmax");
+  return revolve(
+      [&](float v) {
+        const float z = low + (high - low) * v, r = radius * std::sqrt(z / high);
+        return ProfilePoint{r, z, 2 * high * r / (radius * radius), -1};
+      },
+      turn, kProfileSteps);
 }
 
 }  // namespace
@@ -178,19 +233,24 @@ std::optional<ShapeValue> make_shape(const Directive& directive, const ShapeFram
   } else if (kind == "bilinearmesh") {
     take_mesh(bilinear_mesh(directive));
   } else if (kind == "loopsubdiv") {
-    parameters.ignore({"levels", "nlevels", "scheme"});
-    take_mesh(triangle_mesh(directive));
-    warnings.once(directive.place, "subdivision surfaces are not supported; their control meshes stand in");
-  } else if (kind == "sphere") {
-    value = sphere(directive, frame, warnings);
-  } else if (kind == "disk") {
-    value = disk(directive, frame, warnings);
+    parameters.ignore({"scheme"});
+    const int levels = std::clamp(parameters.integer("levels", parameters.integer("nlevels", 3)), 0, 10);
+    take_mesh(subdivide(triangle_mesh(directive), levels));
+  } else if (kind == "sphere" || kind == "disk") {
+    TriangleMesh part;
+    std::optional<ShapeValue> whole =
+        kind == "sphere" ? sphere(directive, frame, part) : disk(directive, frame, part);
+    if (whole)
+      value = std::move(*whole);
+    else
+      take_mesh(std::move(part));
+  } else if (kind == "cylinder" || kind == "cone" || kind == "paraboloid") {
+    take_mesh(quadric(kind, directive));
   } else {
     warnings.once(directive.place,
                   "shapes of the kind " + in_quotes(kind) + " are not supported and left out");
     return std::nullopt;
   }
-  parameters.warn_unused(directive.subject(), warnings);
   if (value.geometry.name.empty())
     value.geometry.name = kind + " of line " + std::to_string(directive.place.line);
   return value;

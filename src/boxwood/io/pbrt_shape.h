@@ -26,7 +26,7 @@ struct ShapeFrame {
 };
 
 /// The shape of a Shape directive; none, with a warning, for kinds that are not supported. Throws FileError
-/// for parameters that make no shape.
+/// for parameters that make no shape. Parameters that nobody asks for are the caller's to name.
 std::optional<ShapeValue> make_shape(const Directive& directive, const ShapeFrame& frame,
                                      const Parser& parser, Warnings& warnings);
 

@@ -14,6 +14,7 @@ struct Attributes {
   ShapeFrame frame;
   int material = 0;  ///< Position in Materials::values().
   std::optional<Glow> glow;
+  Vec3 inner_absorption{0, 0, 0}, outer_absorption{0, 0, 0};  ///< Of the media on both sides of a surface.
   bool is_end_of_motion = false;  ///< Transforms count for the shutter's closing only.
   std::map<std::string, ParameterList, std::less<>> defaults;  ///< By the Attribute directive's target.
 };

@@ -19,17 +19,22 @@ TextureValue Textures::evaluate(const Directive& directive) {
   const ParameterList& parameters = directive.parameters;
   const std::string& kind = directive.strings[2];
   if (kind == "imagemap") return image_map(directive);
-  if (kind == "constant") return {plain_color(parameters, "value", {1, 1, 1}), -1};
+  if (kind == "constant") return {plain_color(parameters, "value", {1, 1, 1}), {}};
   if (kind == "scale") {
     // Version 3 multiplies tex1 and tex2, version 4 multiplies tex and scale.
     const bool is_new = parameters.find("tex") != nullptr || parameters.find("scale") != nullptr;
     const TextureValue a = color(parameters, is_new ? "tex" : "tex1", {}),
                        b = color(parameters, is_new ? "scale" : "tex2", {});
-    if (a.picture >= 0 && b.picture >= 0)
-      warnings_.once(directive.place, "a product of two pictures is not supported; the first one stands in");
-    return {a.color * b.color, a.picture >= 0 ? a.picture : b.picture};
+    if (a.is_plain() || b.is_plain()) return {a.color * b.color, a.is_plain() ? b.texture : a.texture};
+    Texture product;
+    product.name = directive.strings[0];
+    product.kind = Texture::Kind::product;
+    product.first = {a.color, a.texture};
+    product.second = {b.color, b.texture};
+    return {{1, 1, 1}, desc_.add(std::move(product))};
   }
-  if (kind == "mix") return mean_of_two(directive, number(parameters, "amount", 0.5f));
+  if (kind == "mix") return mix(directive);
+  if (kind == "checkerboard" && parameters.integer("dimension", 2) == 2) return checkerboard(directive);
   if (kind == "checkerboard" || kind == "dots") {
     const TextureValue mean = mean_of_two(directive, 0.5f);
     parameters.ignore({"dimension", "mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2", "aamode"});
@@ -40,7 +45,20 @@ TextureValue Textures::evaluate(const Directive& directive) {
   for (const Parameter& parameter : parameters.all()) parameter.is_used = true;
   warnings_.once(directive.place,
                  "textures of the kind " + in_quotes(kind) + " are not supported; plain grey stands in");
-  return {{0.5f, 0.5f, 0.5f}, -1};
+  return {{0.5f, 0.5f, 0.5f}, {}};
+}
+
+/// Where the texture lies on the surface.
+void Textures::place(const Directive& directive, Texture& texture) const {
+  const ParameterList& parameters = directive.parameters;
+  if (parameters.string("mapping", "uv") != "uv") {
+    parameters.ignore({"v1", "v2"});
+    warnings_.once(directive.place,
+                   "textures with a mapping other than \"uv\" are not supported; the uvs are taken");
+  }
+  texture.u_axis = {parameters.number("uscale", 1), 0};
+  texture.v_axis = {0, parameters.number("vscale", 1)};
+  texture.offset = {parameters.number("udelta", 0), parameters.number("vdelta", 0)};
 }
 
 TextureValue Textures::image_map(const Directive& directive) {
@@ -52,36 +70,71 @@ TextureValue Textures::image_map(const Directive& directive) {
   // How it is sampled is the renderer's to decide.
   parameters.ignore({"trilinear", "filter", "maxanisotropy"});
 
-  Picture picture{parser_.resolve(file), false, directive.place};
-  picture.is_linear = !parameters.boolean("gamma", true) || parameters.string("encoding", "sRGB") == "linear";
-  const TextureValue value{splat(number(parameters, "scale", 1)), static_cast<int>(pictures_.size())};
-
-  // Where the picture lies on the surface: as the uvs say is all we know.
-  if (parameters.string("mapping", "uv") != "uv" || parameters.number("uscale", 1) != 1 ||
-      parameters.number("vscale", 1) != 1 || parameters.number("udelta", 0) != 0 ||
-      parameters.number("vdelta", 0) != 0)
+  Picture picture{parser_.resolve(file), false, {}, directive.place};
+  const std::string encoding = parameters.string("encoding", "sRGB");
+  picture.is_linear = !parameters.boolean("gamma", true) || encoding == "linear";
+  if (encoding != "sRGB" && encoding != "linear")
     warnings_.once(directive.place,
-                   "imagemap textures with a mapping, scale or shift of their own are not supported; the uvs "
-                   "are taken as they are");
-  if (parameters.string("wrap", "repeat") != "repeat")
-    warnings_.once(directive.place, "imagemap textures that do not repeat are not supported; they repeat");
-  if (parameters.boolean("invert", false))
-    warnings_.once(directive.place, "inverted imagemap textures are not supported");
-
-  // The same picture under two names is one.
-  for (std::size_t i = 0; i < pictures_.size(); ++i)
-    if (pictures_[i].path == picture.path && pictures_[i].is_linear == picture.is_linear)
-      return {value.color, static_cast<int>(i)};
+                   "the encoding " + in_quotes(encoding) + " is not supported; sRGB stands in");
+  Texture texture;
+  texture.name = picture.path.string();
+  place(directive, texture);
+  const std::string wrap = parameters.string("wrap", "repeat");
+  texture.wrap_u = texture.wrap_v = wrap == "black"   ? Texture::Wrap::black
+                                    : wrap == "clamp" ? Texture::Wrap::clamp
+                                                      : Texture::Wrap::repeat;
+  if (wrap != "black" && wrap != "clamp" && wrap != "repeat")
+    warnings_.once(directive.place,
+                   "imagemap textures that wrap by " + in_quotes(wrap) + " are not supported; they repeat");
+  texture.is_inverted = parameters.boolean("invert", false);
+  picture.texture = desc_.add(std::move(texture));
+  const float scale = number(parameters, "scale", 1);
   pictures_.push_back(std::move(picture));
-  return value;
+  return {splat(scale), pictures_.back().texture};
+}
+
+TextureId Textures::normal_map(const std::string& file, const Place& place) {
+  Texture texture;
+  texture.name = file;
+  const TextureId id = desc_.add(std::move(texture));
+  pictures_.push_back({parser_.resolve(file), true, id, place});
+  return id;
+}
+
+TextureValue Textures::mix(const Directive& directive) {
+  const TextureValue a = color(directive.parameters, "tex1", {{0, 0, 0}, {}}),
+                     b = color(directive.parameters, "tex2", {});
+  const NumberValue amount = number_or_texture(directive.parameters, "amount", 0.5f);
+  const bool has_plain_amount = !amount.texture.texture.is_valid();
+  if (a.is_plain() && b.is_plain() && has_plain_amount)
+    return {a.color * (1 - amount.number) + b.color * amount.number, {}};
+  Texture texture;
+  texture.name = directive.strings[0];
+  texture.kind = Texture::Kind::mix;
+  texture.first = {a.color, a.texture};
+  texture.second = {b.color, b.texture};
+  texture.amount = {splat(amount.number), amount.texture.texture};
+  return {{1, 1, 1}, desc_.add(std::move(texture))};
+}
+
+TextureValue Textures::checkerboard(const Directive& directive) {
+  const TextureValue a = color(directive.parameters, "tex1", {}),
+                     b = color(directive.parameters, "tex2", {{0, 0, 0}, {}});
+  directive.parameters.ignore({"aamode"});
+  Texture texture;
+  texture.name = directive.strings[0];
+  texture.kind = Texture::Kind::checkerboard;
+  place(directive, texture);
+  texture.first = {a.color, a.texture};
+  texture.second = {b.color, b.texture};
+  return {{1, 1, 1}, desc_.add(std::move(texture))};
 }
 
 TextureValue Textures::mean_of_two(const Directive& directive, float second_share) const {
-  const TextureValue a = color(directive.parameters, "tex1", {{0, 0, 0}, -1}),
+  const TextureValue a = color(directive.parameters, "tex1", {{0, 0, 0}, {}}),
                      b = color(directive.parameters, "tex2", {});
-  if (a.picture < 0 && b.picture < 0) return {a.color * (1 - second_share) + b.color * second_share, -1};
-  warnings_.once(directive.place, "a mix of pictures is not supported; the larger part stands in");
-  return second_share > 0.5f ? b : a;
+  if (a.is_plain() && b.is_plain()) return {a.color * (1 - second_share) + b.color * second_share, {}};
+  return a.is_plain() ? b : a;
 }
 
 const TextureValue* Textures::find(const Parameter& parameter, bool of_numbers) const {
@@ -100,7 +153,7 @@ TextureValue Textures::color(const ParameterList& parameters, std::string_view n
   const Parameter* parameter = parameters.find(name);
   if (parameter == nullptr) return otherwise;
   if (parameter->type != "texture")
-    return {max(color_of(*parameter, parser_, warnings_).value_or(otherwise.color), Vec3{0, 0, 0}), -1};
+    return {max(color_of(*parameter, parser_, warnings_).value_or(otherwise.color), Vec3{0, 0, 0}), {}};
 
   // Textures of numbers are textures of greys.
   const auto grey = parameter->strings.size() == 1 ? numbers_.find(parameter->strings[0]) : numbers_.end();
@@ -110,21 +163,33 @@ TextureValue Textures::color(const ParameterList& parameters, std::string_view n
 }
 
 Vec3 Textures::plain_color(const ParameterList& parameters, std::string_view name, Vec3 otherwise) const {
-  const TextureValue value = color(parameters, name, {otherwise, -1});
-  if (value.picture < 0) return value.color;
+  const TextureValue value = color(parameters, name, {otherwise, {}});
+  if (value.is_plain()) return value.color;
   warnings_.once(parameters.find(name)->place,
                  "a picture for " + in_quotes(name) + " is not supported; the default stands in");
   return otherwise;
 }
 
-float Textures::number(const ParameterList& parameters, std::string_view name, float otherwise) const {
+NumberValue Textures::number_or_texture(const ParameterList& parameters, std::string_view name,
+                                        float otherwise) const {
   const Parameter* parameter = parameters.find(name);
-  if (parameter == nullptr) return otherwise;
-  if (parameter->type != "texture") return parameters.number(name, otherwise);
-  const TextureValue* value = find(*parameter, true);
-  if (value == nullptr) return otherwise;
-  if (value->picture < 0) return value->color.x;
-  warnings_.once(parameter->place,
+  if (parameter == nullptr) return {otherwise, {}};
+  if (parameter->type == "texture") {
+    const TextureValue* value = find(*parameter, true);
+    if (value == nullptr) return {otherwise, {}};
+    return {value->color.x, {value->texture, NumberTexture::Channel::mean}};
+  }
+  // Version 3 gives some shares, such as that of a mix, as colors.
+  if (parameter->numbers.size() == 3 && parameter->type != "float")
+    return {static_cast<float>((parameter->numbers[0] + parameter->numbers[1] + parameter->numbers[2]) / 3),
+            {}};
+  return {parameters.number(name, otherwise), {}};
+}
+
+float Textures::number(const ParameterList& parameters, std::string_view name, float otherwise) const {
+  const NumberValue value = number_or_texture(parameters, name, otherwise);
+  if (!value.texture.texture.is_valid()) return value.number;
+  warnings_.once(parameters.find(name)->place,
                  "a picture for " + in_quotes(name) + " is not supported; the default stands in");
   return otherwise;
 }

@@ -54,7 +54,6 @@ struct Path {
 struct Pending {
   std::uint32_t path;  // position among the paths on their way
   Vec3 light;
-  Vec3 absorption;
 };
 
 class PathTracer final : public Integrator {
@@ -94,20 +93,20 @@ class PathTracer final : public Integrator {
 
       // Let each go on from there; those at their end leave a gap.
       batch.pending.clear();
-      batch.rays.clear();
+      batch.ways.clear();
       for (std::size_t i = 0; i < paths.size(); ++i)
         batch.goes_on[i] = advance(paths[i], batch.hits[i], static_cast<std::uint32_t>(i), batch);
 
       // Find which of the lights that they asked for are in sight.
+      batch.rays.clear();
+      for (const Shadows::Way& way : batch.ways) batch.rays.push_back(way.ray);
       const std::span<bool> is_hidden(batch.is_hidden.get(), batch.rays.size());
       scene_.any_hit(batch.rays, is_hidden, &serial_executor());
       rays += batch.rays.size();
-      for (std::size_t i = 0; i < batch.pending.size(); ++i) {
-        const Pending& pending = batch.pending[i];
-        Path& path = paths[pending.path];
-        path.gathered +=
-            pending.light * shadows_.transmittance(batch.rays[i], is_hidden[i], pending.absorption, rays);
-      }
+      batch.transmittances.resize(batch.ways.size());
+      shadows_.transmittances(batch.ways, is_hidden, batch.transmittances, rays);
+      for (std::size_t i = 0; i < batch.pending.size(); ++i)
+        paths[batch.pending[i].path].gathered += batch.pending[i].light * batch.transmittances[i];
 
       // Hand in those that are done, and close the gaps.
       std::size_t kept = 0;
@@ -131,7 +130,9 @@ class PathTracer final : public Integrator {
     std::vector<Ray> rays;
     std::vector<Hit> hits;
     std::vector<char> goes_on;
-    std::vector<Pending> pending;  // one for each of `rays`
+    std::vector<Pending> pending;    // one for each of `rays` towards lights,
+    std::vector<Shadows::Way> ways;  // and what it starts in
+    std::vector<Vec3> transmittances;
     std::unique_ptr<bool[]> is_hidden;
   };
 
@@ -223,10 +224,9 @@ class PathTracer final : public Integrator {
     const BsdfValue toward = bsdf.evaluate(light->direction);
     if (!(max_component(toward.value) > 0)) return;
     const float weight = light->is_perfect ? 1 : power_heuristic(light->pdf, toward.pdf);
-    batch.rays.push_back(light->shadow_ray);
-    batch.pending.push_back({position,
-                             path.throughput * toward.value * light->radiance * (weight / light->pdf),
-                             path.absorption});
+    batch.ways.push_back({light->shadow_ray, path.absorption});
+    batch.pending.push_back(
+        {position, path.throughput * toward.value * light->radiance * (weight / light->pdf)});
   }
 
   const PreparedMaterial& prepared(MaterialId id) const {

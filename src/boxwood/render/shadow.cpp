@@ -27,21 +27,38 @@ Shadows::Shadows(const Scene& scene) : scene_(scene) {
   has_see_through_ = std::any_of(materials.begin(), materials.end(), is_see_through);
 }
 
-Vec3 Shadows::transmittance(const Ray& shadow_ray, bool is_hidden, Vec3 absorption,
-                            std::uint64_t& rays) const {
-  const float size = length(shadow_ray.direction);
-  if (!is_hidden)
-    return max_component(absorption) > 0 ? beer(absorption, shadow_ray.t_max * size) : Vec3{1, 1, 1};
-  if (!has_see_through_) return {0, 0, 0};
+void Shadows::transmittances(std::span<const Way> ways, std::span<const bool> is_hidden, std::span<Vec3> out,
+                             std::uint64_t& rays) const {
+  std::vector<Ray> hidden;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const Way& way = ways[i];
+    if (is_hidden[i]) {
+      out[i] = {0, 0, 0};
+      if (has_see_through_) hidden.push_back(way.ray);
+    } else {
+      out[i] = max_component(way.absorption) > 0
+                   ? beer(way.absorption, way.ray.t_max * length(way.ray.direction))
+                   : Vec3{1, 1, 1};
+    }
+  }
+  if (hidden.empty()) return;
 
+  // What is in the way? Mostly something opaque, and that is that.
+  std::vector<Hit> hits(hidden.size());
+  scene_.closest_hit(hidden, hits, &serial_executor());
+  rays += hidden.size();
+  for (std::size_t i = 0, h = 0; i < ways.size(); ++i)
+    if (is_hidden[i]) out[i] = walk(ways[i], hits[h++], rays);
+}
+
+Vec3 Shadows::walk(const Way& way, const Hit& first_hit, std::uint64_t& rays) const {
   const SceneDesc& desc = scene_.description();
-  const bool has_end = shadow_ray.t_max < kInfinity;
-  const Vec3 end = has_end ? shadow_ray.at(shadow_ray.t_max) : Vec3{0, 0, 0};
-  Ray ray = shadow_ray;
-  Vec3 left{1, 1, 1};
+  const bool has_end = way.ray.t_max < kInfinity;
+  const Vec3 end = has_end ? way.ray.at(way.ray.t_max) : Vec3{0, 0, 0};
+  Ray ray = way.ray;
+  Hit hit = first_hit;
+  Vec3 left{1, 1, 1}, absorption = way.absorption;
   for (int step = 0; step < kMaxSteps; ++step) {
-    ++rays;
-    const Hit hit = scene_.closest_hit(ray);
     left *= beer(absorption, min(hit.t, ray.t_max) * length(ray.direction));
     if (!hit) return left;
     const Surface surface = surface_at(scene_, ray, hit);
@@ -51,7 +68,7 @@ Vec3 Shadows::transmittance(const Ray& shadow_ray, bool is_hidden, Vec3 absorpti
 
     // Behind the surface the medium may be another.
     const Material& material = material_of(desc, surface.material);
-    if (material.kind == Material::Kind::clear)
+    if (is_see_through(material))
       absorption = dot(ray.direction, surface.normal) < 0 ? material.absorption : material.outer_absorption;
     const Vec3 along = ray.direction;
     ray = surface.spawn(along);
@@ -60,6 +77,8 @@ Vec3 Shadows::transmittance(const Ray& shadow_ray, bool is_hidden, Vec3 absorpti
       ray.t_max = 1;
       if (!(dot(ray.direction, along) > 0)) return left;  // the surface is where the light is
     }
+    ++rays;
+    hit = scene_.closest_hit(ray);
   }
   return {0, 0, 0};
 }

@@ -21,11 +21,20 @@ class Shadows {
   /// Keeps a reference.
   explicit Shadows(const Scene& scene);
 
-  /// The share that gets from one end of `ray` to the other, through a medium of this absorption at its
-  /// start. `is_hidden` says whether anything is in the way. Adds the rays it traced to `rays`.
-  Vec3 transmittance(const Ray& ray, bool is_hidden, Vec3 absorption, std::uint64_t& rays) const;
+  /// A question: how much light gets from one end of `ray` to the other, through a medium of this absorption
+  /// at its start?
+  struct Way {
+    Ray ray;
+    Vec3 absorption;
+  };
+  /// Answers many. `is_hidden` says of each whether anything is in its way. Adds the rays it traced to
+  /// `rays`.
+  void transmittances(std::span<const Way> ways, std::span<const bool> is_hidden, std::span<Vec3> out,
+                      std::uint64_t& rays) const;
 
  private:
+  Vec3 walk(const Way& way, const Hit& first_hit, std::uint64_t& rays) const;
+
   const Scene& scene_;
   bool has_see_through_ = false;
 };

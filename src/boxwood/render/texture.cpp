@@ -7,10 +7,13 @@
 namespace boxwood::render {
 namespace {
 
-/// Linear light for each 8-bit code, by whether it is sRGB.
+/// Linear light for each 8-bit code, by whether it is sRGB; and for finer sRGB codes.
 struct DecodeTables {
-  float linear[256], srgb[256];
+  static constexpr int kFine = 4096;
+  float linear[256], srgb[256], fine_srgb[kFine];
   DecodeTables() {
+    for (int code = 0; code < kFine; ++code)
+      fine_srgb[code] = linear_from_srgb(static_cast<float>(code) / (kFine - 1));
     for (int code = 0; code < 256; ++code) {
       linear[code] = static_cast<float>(code) / 255;
       srgb[code] = linear_from_srgb(linear[code]);
@@ -51,11 +54,12 @@ Rgba texel_of(const Texture& texture, int level, int width, int x, int y) {
   if (x < 0 || y < 0) return {};
   if (texture.source) {
     const std::array<float, 4> t = texture.source->texel(level, x, y);
-    const Vec3 code{t[0], t[1], t[2]};
-    return {texture.is_srgb
-                ? Vec3{linear_from_srgb(code.x), linear_from_srgb(code.y), linear_from_srgb(code.z)}
-                : code,
-            t[3]};
+    const auto decode = [&](float code) {
+      if (!texture.is_srgb) return code;
+      const float place = min(max(code, 0.0f), 1.0f) * (DecodeTables::kFine - 1);
+      return kDecode.fine_srgb[static_cast<int>(place + 0.5f)];
+    };
+    return {{decode(t[0]), decode(t[1]), decode(t[2])}, t[3]};
   }
   const auto& t = texture.texels[std::size_t(y) * width + x];
   const float* decode = texture.is_srgb ? kDecode.srgb : kDecode.linear;
@@ -120,20 +124,20 @@ Texel texture_at(const SceneDesc& desc, TextureId id, Vec2 uv, float width) {
     case Texture::Kind::picture:
       return picture_at(texture, st, own_width);
     case Texture::Kind::product: {
-      const Texel a = operand_at(desc, texture.first, st, own_width),
-                  b = operand_at(desc, texture.second, st, own_width);
+      const Texel a = operand_at(desc, texture.first, uv, width),
+                  b = operand_at(desc, texture.second, uv, width);
       return {a.color * b.color, a.alpha * b.alpha};
     }
     case Texture::Kind::mix: {
-      const Texel a = operand_at(desc, texture.first, st, own_width),
-                  b = operand_at(desc, texture.second, st, own_width);
-      const Vec3 share = operand_at(desc, texture.amount, st, own_width).color;
+      const Texel a = operand_at(desc, texture.first, uv, width),
+                  b = operand_at(desc, texture.second, uv, width);
+      const Vec3 share = operand_at(desc, texture.amount, uv, width).color;
       return {a.color * (splat(1) - share) + b.color * share, a.alpha * (1 - share.x) + b.alpha * share.x};
     }
     case Texture::Kind::checkerboard: {
       const double sum = std::floor(double(st.x)) + std::floor(double(st.y));
       const bool is_first = sum - 2 * std::floor(sum / 2) == 0;
-      return operand_at(desc, is_first ? texture.first : texture.second, st, own_width);
+      return operand_at(desc, is_first ? texture.first : texture.second, uv, width);
     }
   }
   return {{1, 1, 1}, 1};

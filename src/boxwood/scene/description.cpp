@@ -88,15 +88,11 @@ void check_materials(const SceneDesc& desc) {
   for (std::size_t i = 0; i < desc.materials.size(); ++i) {
     const Material& m = desc.materials[i];
     const std::string name = "material '" + m.name + "'";
-    for (const TextureId id :
-         {m.color_texture, m.emission_texture, m.transmission_color_texture, m.normal_texture,
-          m.specular_color_texture, m.sheen_color_texture, m.roughness_texture.texture,
-          m.opacity_texture.texture, m.metalness_texture.texture, m.transmission_texture.texture,
-          m.specular_texture.texture, m.coat_texture.texture, m.coat_roughness_texture.texture,
-          m.sheen_roughness_texture.texture, m.mix_texture.texture})
+    for_each_texture(m, [&](TextureId id) {
       if (id.is_valid() && id.value >= desc.textures.size())
         fail(name + " has texture " + std::to_string(id.value) + ", but there are " +
              std::to_string(desc.textures.size()));
+    });
     if (m.kind != Material::Kind::mix) continue;
     for (const MaterialId id : {m.first, m.second})
       if (id.is_valid() && id.value >= i)

@@ -90,7 +90,8 @@ struct Texture {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;  ///< Beyond [0, 1].
   bool is_inverted = false;                           ///< 1 - color.
   Operand first, second, amount;
-  /// Texture coordinates from the surface's: (u, v) -> u_axis * u + v_axis * v + offset. For all kinds.
+  /// Texture coordinates from the surface's: (u, v) -> u_axis * u + v_axis * v + offset. For pictures and
+  /// checkerboards; operands start from the surface's again.
   Vec2 u_axis{1, 0}, v_axis{0, 1}, offset{0, 0};
   std::shared_ptr<const PictureSource> source;  ///< A picture whose pixels stay in its file.
 };
@@ -234,6 +235,18 @@ struct SceneDesc {
   MaterialId add(Material material);
   TextureId add(Texture texture);
 };
+
+/// Calls visit(TextureId&) for every place where a material may have a texture.
+template <class AnyMaterial, class Visit>
+void for_each_texture(AnyMaterial& m, const Visit& visit) {
+  for (auto* id : {&m.color_texture, &m.emission_texture, &m.transmission_color_texture, &m.normal_texture,
+                   &m.specular_color_texture, &m.sheen_color_texture})
+    visit(*id);
+  for (auto* number : {&m.roughness_texture, &m.opacity_texture, &m.metalness_texture,
+                       &m.transmission_texture, &m.specular_texture, &m.coat_texture,
+                       &m.coat_roughness_texture, &m.sheen_roughness_texture, &m.mix_texture})
+    visit(number->texture);
+}
 
 /// How many primitives a geometry has,
 /// or a description defines (each geometry once), or shows (each instance).
