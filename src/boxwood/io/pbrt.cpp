@@ -18,6 +18,10 @@ namespace boxwood::io {
 namespace pbrt {
 namespace {
 
+/// What stands in for a picture that is missing: the grey of a photographer's card, as bright as most scenes
+/// are on average.
+constexpr Vec3 kPlainGrey{0.18f, 0.18f, 0.18f};
+
 class Interpreter {
  public:
   Interpreter(const std::filesystem::path& path, Executor& executor)
@@ -372,7 +376,7 @@ void Interpreter::read_files() {
     if (errors[meshes + place]) {
       // In products and mixes, grey; elsewhere see below.
       texture.kind = Texture::Kind::product;
-      texture.first.color = splat(0.5f);
+      texture.first.color = kPlainGrey;
       is_missing[picture.texture.value] = true;
       try {
         std::rethrow_exception(errors[meshes + place]);
@@ -390,7 +394,8 @@ void Interpreter::read_files() {
     texture.is_srgb = file.is_srgb && !picture.is_linear;
   }
   for (Material& material : desc_.materials) {
-    if (material.color_texture.is_valid() && is_missing[material.color_texture.value]) material.color *= 0.5f;
+    if (material.color_texture.is_valid() && is_missing[material.color_texture.value])
+      material.color = material.color * kPlainGrey;
     for_each_texture(material, [&](TextureId& id) {
       if (id.is_valid() && is_missing[id.value]) id = {};
     });

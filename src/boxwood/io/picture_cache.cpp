@@ -1,5 +1,6 @@
 #include "boxwood/io/picture_cache.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <vector>
@@ -29,21 +30,26 @@ OIIO::ImageCache& cache() {
   return *shared;
 }
 
-/// A thread's own copies of the tiles that it asked for last.
+/// A thread's own copies of the tiles that it asked for last, so that most texels cost no lock.
 struct TileMemo {
-  static constexpr std::size_t kTiles = 64;
+  static constexpr std::size_t kTiles = 256;
   struct Tile {
     std::uint64_t picture = 0;  // serial number; 0: empty
     int level = 0, x = 0, y = 0;
-    std::vector<float> rgba;
+    std::vector<std::uint8_t> bytes;  // RGBA, of pictures of 8 bits
+    std::vector<float> floats;        // of others
   };
   std::array<Tile, kTiles> tiles;
 };
 
 class CachedPicture final : public PictureSource {
  public:
-  CachedPicture(const std::filesystem::path& path, int width, int height, int channels)
-      : file_(path.string()), width_(width), height_(height), channels_(channels) {
+  CachedPicture(const std::filesystem::path& path, int width, int height, const OIIO::ImageSpec& spec)
+      : file_(path.string()),
+        width_(width),
+        height_(height),
+        channels_(std::min(spec.nchannels, 4)),
+        has_bytes_(spec.format == OIIO::TypeDesc::UINT8) {
     static std::atomic<std::uint64_t> made = 0;
     serial_ = ++made;
     for (int side = std::max(width, height); side > 1; side /= 2) ++levels_;
@@ -55,18 +61,24 @@ class CachedPicture final : public PictureSource {
 
   std::array<float, 4> texel(int level, int x, int y) const override {
     const TileMemo::Tile& tile = this->tile(level, x / kTileSide, y / kTileSide);
-    const float* p = &tile.rgba[4 * (std::size_t(y % kTileSide) * kTileSide + x % kTileSide)];
-    return {p[0], p[1], p[2], p[3]};
+    const std::size_t at = 4 * (std::size_t(y % kTileSide) * kTileSide + x % kTileSide);
+    if (!has_bytes_) return {tile.floats[at], tile.floats[at + 1], tile.floats[at + 2], tile.floats[at + 3]};
+    const std::uint8_t* p = &tile.bytes[at];
+    constexpr float kUnit = 1 / 255.0f;
+    return {p[0] * kUnit, p[1] * kUnit, p[2] * kUnit, p[3] * kUnit};
   }
 
  private:
   const TileMemo::Tile& tile(int level, int x, int y) const {
     static thread_local TileMemo memo;
     const std::size_t slot =
-        (serial_ * 31 + std::size_t(level) * 17 + std::size_t(x) + std::size_t(y) * 7) % TileMemo::kTiles;
+        (serial_ * 37 + std::size_t(level) * 101 + std::size_t(x) + std::size_t(y) * 16) % TileMemo::kTiles;
     TileMemo::Tile& tile = memo.tiles[slot];
     if (tile.picture == serial_ && tile.level == level && tile.x == x && tile.y == y) return tile;
-    read(tile, level, x, y);
+    if (has_bytes_)
+      read<std::uint8_t>(tile.bytes, 255, OIIO::TypeDesc::UINT8, level, x, y);
+    else
+      read<float>(tile.floats, 1, OIIO::TypeDesc::FLOAT, level, x, y);
     tile.picture = serial_;
     tile.level = level;
     tile.x = x;
@@ -74,32 +86,33 @@ class CachedPicture final : public PictureSource {
     return tile;
   }
 
-  void read(TileMemo::Tile& tile, int level, int x, int y) const {
-    tile.rgba.assign(std::size_t(kTileSide) * kTileSide * 4, 1.0f);
+  template <class T>
+  void read(std::vector<T>& rgba, T one, OIIO::TypeDesc type, int level, int x, int y) const {
+    rgba.assign(std::size_t(kTileSide) * kTileSide * 4, one);
     const int x0 = x * kTileSide, y0 = y * kTileSide;
     const int columns = std::min(kTileSide, std::max(width_ >> level, 1) - x0),
               rows = std::min(kTileSide, std::max(height_ >> level, 1) - y0);
-    const int channels = std::min(channels_, 4);
-    std::vector<float> values(std::size_t(columns) * rows * channels);
+    std::vector<T> values(std::size_t(columns) * rows * channels_);
     // A file that has gone since it was opened is white.
     if (!cache().get_pixels(OIIO::ustring(file_), 0, level, x0, x0 + columns, y0, y0 + rows, 0, 1, 0,
-                            channels, OIIO::TypeDesc::FLOAT, values.data())) {
+                            channels_, type, values.data())) {
       (void)cache().geterror();
       return;
     }
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
-        const float* from = &values[(std::size_t(row) * columns + column) * channels];
-        float* to = &tile.rgba[4 * (std::size_t(row) * kTileSide + column)];
+        const T* from = &values[(std::size_t(row) * columns + column) * channels_];
+        T* to = &rgba[4 * (std::size_t(row) * kTileSide + column)];
         // One channel is a grey, two a grey with alpha.
-        for (int c = 0; c < 3; ++c) to[c] = from[channels >= 3 ? c : 0];
-        to[3] = channels == 4 ? from[3] : channels == 2 ? from[1] : 1.0f;
+        for (int c = 0; c < 3; ++c) to[c] = from[channels_ >= 3 ? c : 0];
+        to[3] = channels_ == 4 ? from[3] : channels_ == 2 ? from[1] : one;
       }
   }
 
   std::string file_;
   std::uint64_t serial_;
   int width_, height_, channels_, levels_ = 1;
+  bool has_bytes_;
 };
 
 }  // namespace
@@ -113,7 +126,7 @@ Texture open_texture(const std::filesystem::path& path) {
     (void)cache().geterror();
     return texture;  // it stays in memory
   }
-  texture.source = std::make_shared<CachedPicture>(path, texture.width, texture.height, spec.nchannels);
+  texture.source = std::make_shared<CachedPicture>(path, texture.width, texture.height, spec);
   texture.texels = {};
   // What the file holds, not what it was encoded as in memory.
   if (spec.format.is_floating_point() || spec["oiio:ColorSpace"].get() == "Linear") texture.is_srgb = false;

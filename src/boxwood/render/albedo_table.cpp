@@ -12,9 +12,9 @@
 namespace boxwood::render {
 namespace {
 
-constexpr int kWidths = 24;         // of a table for all widths
-constexpr int kSamples = 1024;      // of each integral
-constexpr int kFewerSamples = 256;  // where a table has many rows
+constexpr int kWidths = 24;          // of a table for all widths
+constexpr int kSamples = 4096;       // of each integral
+constexpr int kFewerSamples = 1024;  // where a table has many rows
 constexpr float kLeastAlpha = 0.001f;
 
 /// The weight of one visible normal: what a path would carry on in the direction that it leads to.
@@ -38,14 +38,60 @@ float weight(AlbedoTable::Lobe lobe, float eta, float alpha, Vec3 outgoing, Vec2
 
 }  // namespace
 
+namespace {
+
+/// Where between two knots a cosine is. The angles crowd at the horizon, where albedos change fast: knot i
+/// stands at (i / n)^2.
+struct Knot {
+  Knot(float cosine, int angles) {
+    const float x = std::sqrt(min(max(cosine, 0.0f), 1.0f)) * static_cast<float>(angles - 1);
+    below = std::min(static_cast<int>(x), angles - 2);
+    const float a = static_cast<float>(below * below), b = static_cast<float>((below + 1) * (below + 1));
+    share = (x * x - a) / (b - a);
+  }
+  int below;
+  float share;  // linear in the cosine
+};
+
+float knot_cosine(int i, int angles) {
+  const float root = static_cast<float>(i) / static_cast<float>(angles - 1);
+  return root * root;
+}
+
+}  // namespace
+
 float AlbedoRow::at(float cosine) const {
-  // The angles crowd at the horizon, where albedos change fast: knot i stands at (i / n)^2.
-  const float x = std::sqrt(min(max(cosine, 0.0f), 1.0f)) * (kAngles - 1);
-  const int i = std::min(static_cast<int>(x), kAngles - 2);
-  // Linear in the cosine between two knots.
-  const float a = static_cast<float>(i * i), b = static_cast<float>((i + 1) * (i + 1));
-  const float t = (x * x - a) / (b - a);
-  return values_[i] * (1 - t) + values_[i + 1] * t;
+  const Knot k(cosine, kAngles);
+  return values_[k.below] * (1 - k.share) + values_[k.below + 1] * k.share;
+}
+
+void AlbedoRow::finish() {
+  // The mean of 2 cosine albedo, each piece between two knots exactly.
+  double mean = 0, missing = 0;
+  for (int i = 0; i + 1 < kAngles; ++i) {
+    const double a = knot_cosine(i, kAngles), b = knot_cosine(i + 1, kAngles);
+    const double fa = values_[i], fb = values_[i + 1];
+    const double piece = (b - a) * (fa * (2 * a + b) + fb * (a + 2 * b)) / 3;
+    mean += piece;
+    missing += std::max(b * b - a * a - piece, 1e-9);
+    running_missing_[i + 1] = static_cast<float>(missing);
+  }
+  mean_ = static_cast<float>(mean);
+  for (float& sum : running_missing_) sum /= static_cast<float>(missing);
+}
+
+float AlbedoRow::sample_missing(float u) const {
+  const auto found = std::upper_bound(running_missing_.begin(), running_missing_.end(), u);
+  const int above = std::clamp(static_cast<int>(found - running_missing_.begin()), 1, kAngles - 1);
+  const float before = running_missing_[above - 1], size = running_missing_[above] - before;
+  const float share = size > 0 ? min(max((u - before) / size, 0.0f), 1.0f) : 0.5f;
+  return knot_cosine(above - 1, kAngles) * (1 - share) + knot_cosine(above, kAngles) * share;
+}
+
+float AlbedoRow::missing_density(float cosine) const {
+  const Knot k(cosine, kAngles);
+  return (running_missing_[k.below + 1] - running_missing_[k.below]) /
+         (knot_cosine(k.below + 1, kAngles) - knot_cosine(k.below, kAngles));
 }
 
 AlbedoTable::AlbedoTable(Lobe lobe, float eta, float alpha) : rows_(alpha < 0 ? kWidths : 1) {
@@ -65,17 +111,7 @@ AlbedoTable::AlbedoTable(Lobe lobe, float eta, float alpha) : rows_(alpha < 0 ? 
       }
       row.values_[i] = static_cast<float>(sum / samples);
     }
-    // The mean of 2 cosine albedo, each piece between two knots exactly.
-    double mean = 0;
-    for (int i = 0; i + 1 < AlbedoRow::kAngles; ++i) {
-      const auto knot = [](int k) {
-        const double t = double(k) / (AlbedoRow::kAngles - 1);
-        return t * t;
-      };
-      const double a = knot(i), b = knot(i + 1), fa = row.values_[i], fb = row.values_[i + 1];
-      mean += (b - a) * (fa * (2 * a + b) + fb * (a + 2 * b)) / 3;
-    }
-    row.mean_ = static_cast<float>(mean);
+    row.finish();
   }
 }
 
@@ -89,6 +125,11 @@ AlbedoTable::Place AlbedoTable::place(float alpha) const {
 float AlbedoTable::at(float alpha, float cosine) const {
   const Place p = place(alpha);
   return p.share > 0 ? p.below.at(cosine) * (1 - p.share) + p.above.at(cosine) * p.share : p.below.at(cosine);
+}
+
+const AlbedoRow& AlbedoTable::nearest(float alpha) const {
+  const Place p = place(alpha);
+  return p.share < 0.5f ? p.below : p.above;
 }
 
 float AlbedoTable::mean(float alpha) const {

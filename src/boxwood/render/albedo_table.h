@@ -23,10 +23,17 @@ class AlbedoRow {
   /// The mean over a hemisphere of equal light.
   float mean() const { return mean_; }
 
+  /// A cosine that is drawn in proportion to what is missing there, (1 - albedo) * cosine, nearly.
+  float sample_missing(float u) const;
+  /// The density, per cosine, with which sample_missing() draws it.
+  float missing_density(float cosine) const;
+
  private:
   friend class AlbedoTable;
-  static constexpr int kAngles = 64;
+  void finish();
+  static constexpr int kAngles = 128;
   std::array<float, kAngles> values_{};
+  std::array<float, kAngles> running_missing_{};  // up to each knot, of 1 in all
   float mean_ = 0;
 };
 
@@ -47,6 +54,8 @@ class AlbedoTable {
   /// The albedo at a cosine, for a width that the table was made for.
   float at(float alpha, float cosine) const;
   float mean(float alpha) const;
+  /// A row for a width that is at least near.
+  const AlbedoRow& nearest(float alpha) const;
 
   /// The table of these arguments, made when it is first asked for and then shared. Any thread may ask.
   static std::shared_ptr<const AlbedoTable> get(Lobe lobe, float eta, float alpha);

@@ -75,7 +75,7 @@ void Bsdf::set_shares() {
       share_[metal] = look_.metalness;
       share_[glass] = (1 - look_.metalness) * look_.transmission;
       share_[diffuse] = share_[specular] = (1 - look_.metalness) * (1 - look_.transmission);
-      boundary_ = look_.specular;
+      boundary_ = share_[specular] > 0 ? look_.specular : 0;
       // Each layer takes its part of what comes from above.
       float below = 1;
       if (look_.coat > 0) {
@@ -212,7 +212,7 @@ Bsdf::Scattered Bsdf::evaluate_lobe(Lobe lobe, Vec3 incoming) const {
     case metal:
       return evaluate_metal(incoming);
     case sheen:
-      return {look_.sheen_color * sheen_lobe(look_.sheen_alpha, outgoing_, incoming), lambert};
+      return {look_.sheen_color * sheen_lobe(look_.sheen_alpha, outgoing_, incoming), 1 / (2 * kPi)};
     default: {
       const Ggx ggx{lobe == coat ? look_.coat_alpha : alpha_};
       const Vec3 half = normalize(incoming + outgoing_);
@@ -236,7 +236,8 @@ Bsdf::Scattered Bsdf::evaluate_metal(Vec3 incoming) const {
   const float lambert = incoming.z / kPi;
   const float missing = gone > 1e-6f ? multiple_ * max(0.0f, 1 - table.at(alpha_, incoming.z)) / gone : 0;
   return {fresnel * ggx.reflection(outgoing_, incoming, half) + bounces * (missing * lambert),
-          (1 - multiple_) * ggx.reflection_pdf(outgoing_, half) + multiple_ * lambert};
+          (1 - multiple_) * ggx.reflection_pdf(outgoing_, half) +
+              multiple_ * table.nearest(alpha_).missing_density(incoming.z) / (2 * kPi)};
 }
 
 Bsdf::Scattered Bsdf::evaluate_glass(Vec3 incoming) const {
@@ -245,7 +246,7 @@ Bsdf::Scattered Bsdf::evaluate_glass(Vec3 incoming) const {
   const AlbedoTable& table =
       *(is_inside_ && !look_.is_thin ? look_.prepared->glass_inside : look_.prepared->glass_outside);
   // What the facets' shadows take is given back by scaling.
-  const float scale = ggx.masking(outgoing_, incoming) / max(table.at(alpha_, outgoing_.z), 0.01f);
+  const float kept = max(table.at(alpha_, outgoing_.z), 0.01f);
 
   if (is_reflection || look_.is_thin) {
     // A pane sends light through as if it had been mirrored by the pane.
@@ -253,6 +254,7 @@ Bsdf::Scattered Bsdf::evaluate_glass(Vec3 incoming) const {
     const Vec3 half = normalize(reflected + outgoing_);
     const float f = glass_reflectance(dot(outgoing_, half));
     const float pdf = (is_reflection ? f : 1 - f) * ggx.reflection_pdf(outgoing_, half);
+    const float scale = ggx.masking(outgoing_, reflected) / kept;
     return {(is_reflection ? look_.reflection_color : look_.color) * (pdf * scale), pdf};
   }
   // The facet that bends light from one direction into the other: Walter et al. 2007, equations 16 and 17.
@@ -264,7 +266,7 @@ Bsdf::Scattered Bsdf::evaluate_glass(Vec3 incoming) const {
   const float pdf = (1 - glass_reflectance(out)) * ggx.visible_density(outgoing_, half) * eta_ * eta_ * -in /
                     (denominator * denominator);
   if (!(pdf < kInfinity)) return {};
-  return {look_.color * (pdf * scale), pdf};
+  return {look_.color * (pdf * ggx.masking(outgoing_, incoming) / kept), pdf};
 }
 
 std::optional<BsdfSample> Bsdf::sample(float choice, Vec2 u) const {
@@ -297,14 +299,20 @@ std::optional<BsdfSample> Bsdf::sample(float choice, Vec2 u) const {
 std::optional<Vec3> Bsdf::sample_lobe(Lobe lobe, float choice, Vec2 u) const {
   switch (lobe) {
     case diffuse:
-    case sheen:
       return cosine_hemisphere(u);
+    case sheen:
+      return uniform_cone(u, 1);
     case through: {
       const Vec3 up = cosine_hemisphere(u);
       return Vec3{up.x, up.y, -up.z};
     }
     case metal:
-      if (choice < multiple_) return cosine_hemisphere(u);
+      if (choice < multiple_) {
+        // Where it is missing most, mostly at flat angles.
+        const float z = look_.prepared->reflection->nearest(alpha_).sample_missing(u.x);
+        const float radius = std::sqrt(max(0.0f, 1 - z * z)), angle = 2 * kPi * u.y;
+        return Vec3{radius * std::cos(angle), radius * std::sin(angle), z};
+      }
       break;
     default:
       break;

@@ -77,6 +77,10 @@ Ray Lens::ray(Vec2 film, Vec2 lens) const {
   return ray;
 }
 
+float pixel_angle(const Camera& camera, int width, int height) {
+  return 2 * half_extent(camera.fov_deg, width, height).x / static_cast<float>(width);
+}
+
 Camera choose_camera(const SceneDesc& desc, int width, int height) {
   return desc.camera ? *desc.camera : frame_camera(desc, width, height);
 }

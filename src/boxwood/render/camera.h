@@ -26,6 +26,9 @@ class Lens {
   float lens_radius_, focus_distance_;
 };
 
+/// How wide a pixel in the middle of the picture looks, in radians.
+float pixel_angle(const Camera& camera, int width, int height);
+
 /// The scene's own camera, else one that frames it.
 Camera choose_camera(const SceneDesc& desc, int width, int height);
 

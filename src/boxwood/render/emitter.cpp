@@ -19,7 +19,7 @@ Vec3 position_error(Vec3 parts) {
 
 std::uint32_t emitters_per_part(const Shapes& shapes) {
   if (std::holds_alternative<std::vector<Quad>>(shapes)) return 1;
-  if (std::holds_alternative<std::vector<Cuboid>>(shapes)) return 2;
+  if (std::holds_alternative<std::vector<Cuboid>>(shapes)) return 1;
   return 0;
 }
 
@@ -124,17 +124,28 @@ void EmitterGroup::add(const Quad& quad, const Material& material) {
   add(quad.half(1), material);
 }
 
-/// Two triangles for each face, in the order of Cuboid's parts.
+/// A parallelogram for each face, in the order of Cuboid's parts.
 void EmitterGroup::add(const Cuboid& cuboid, const Material& material) {
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2, across = (axis + 1) % 3, along = (axis + 2) % 3;
     const bool is_upper = face % 2 == 1;
-    Vec3 corner = cuboid.lower;
+    Vec3 corner = cuboid.lower, x{0, 0, 0}, y{0, 0, 0}, out{0, 0, 0};
     corner[axis] = is_upper ? cuboid.upper[axis] : cuboid.lower[axis];
-    Vec3 b = corner, c = corner, d = corner;
-    b[across] = c[across] = cuboid.upper[across];
-    c[along] = d[along] = cuboid.upper[along];
-    add(is_upper ? Quad{corner, b, c, d} : Quad{corner, d, c, b}, material);
+    x[across] = cuboid.upper[across] - cuboid.lower[across];
+    y[along] = cuboid.upper[along] - cuboid.lower[along];
+    out[axis] = is_upper ? 1.0f : -1.0f;
+
+    Emitter emitter{Emitter::Kind::parallelogram};
+    emitter.a = world_from_object_.point(corner);
+    emitter.x = world_from_object_.vector(x);
+    emitter.y = world_from_object_.vector(y);
+    emitter.area = length(cross(emitter.x, emitter.y));
+    emitter.normal = transform_normal(object_from_world_, out);
+    Box3 box;
+    for (const Vec3 p :
+         {emitter.a, emitter.a + emitter.x, emitter.a + emitter.y, emitter.a + emitter.x + emitter.y})
+      box.extend(p);
+    finish(emitter, material, box);
   }
 }
 
@@ -174,7 +185,9 @@ EmitterPoint EmitterGroup::sample(std::size_t index, Vec3 receiver, Vec2 u) cons
   const Emitter& emitter = emitters_[index];
   if (emitter.kind == Emitter::Kind::sphere) return sample_sphere(emitter, receiver, u);
 
-  const Vec2 weights = emitter.kind == Emitter::Kind::triangle ? uniform_triangle(u) : uniform_disk(u);
+  const Vec2 weights = emitter.kind == Emitter::Kind::triangle        ? uniform_triangle(u)
+                       : emitter.kind == Emitter::Kind::parallelogram ? u
+                                                                      : uniform_disk(u);
   EmitterPoint point{};
   point.surface.position = emitter.a + emitter.x * weights.x + emitter.y * weights.y;
   point.surface.error = position_error(abs(emitter.a) + abs(emitter.x) + abs(emitter.y));

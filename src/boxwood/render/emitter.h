@@ -2,8 +2,8 @@
 //
 // All shining shapes of one instance form a group of emitters; which of them is tried, the light tree says
 // (light_tree.h). A point of it is chosen uniformly by area; on spheres only on the half that faces the
-// receiver. Flat shapes become triangles and disks in world space; a sphere keeps its transform, because it
-// may be squeezed, and the change of area goes into the density.
+// receiver. Flat shapes become triangles, parallelograms and disks in world space; a sphere keeps its
+// transform, because it may be squeezed, and the change of area goes into the density.
 #pragma once
 
 #include <array>
@@ -48,9 +48,10 @@ class EmitterGroup {
 
  private:
   struct Emitter {
-    enum class Kind : std::uint8_t { triangle, disk, sphere } kind;
+    enum class Kind : std::uint8_t { triangle, parallelogram, disk, sphere } kind;
     bool emits_from_both_sides;
-    Vec3 a, x, y;  // triangle: corner and edges; disk: middle and two radii; sphere: middle (object space)
+    Vec3 a, x, y;  // triangle and parallelogram: corner and edges; disk: middle and two radii; sphere: middle
+                   // (object space)
     float radius = 0;  // sphere, object space
     Vec3 normal;       // triangle and disk; the front
     Vec3 radiance;
@@ -80,7 +81,7 @@ class EmitterGroup {
   std::vector<Emitter> emitters_;
   std::vector<Box3> boxes_;                   // of the emitters, in world space
   std::vector<std::uint32_t> first_emitter_;  // PrimId -> emitters_; kNoEmitter: does not shine
-  std::uint32_t emitters_per_part_ = 0;       // a quad has a triangle for each Crossing::part, a cuboid two
+  std::uint32_t emitters_per_part_ = 0;  // a quad has a triangle for each Crossing::part, a cuboid a face
 };
 
 }  // namespace boxwood::render

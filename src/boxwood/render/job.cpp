@@ -68,8 +68,9 @@ RenderJob::RenderJob(const Scene& scene, const RenderOptions& options)
       camera_(choose_camera(scene.description(), options.width, options.height)),
       lens_(camera_, options.width, options.height),
       filter_(options.filter),
-      integrator_(options.mode == Mode::path ? make_path_tracer(scene, camera_)
-                                             : make_aov(scene, options.mode)),
+      integrator_(options.mode == Mode::path
+                      ? make_path_tracer(scene, camera_, pixel_angle(camera_, options.width, options.height))
+                      : make_aov(scene, options.mode)),
       features_(scene, options.layers),
       first_sample_(share_end(options, options.shard.index - 1)),
       end_sample_(share_end(options, options.shard.index)),

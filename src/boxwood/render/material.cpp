@@ -100,7 +100,8 @@ PreparedMaterial::PreparedMaterial(const Material& material)
   const bool is_layered = material.kind == Kind::layered;
   if (material.kind == Kind::metal || (is_layered && material.metalness > 0))
     reflection = table(Lobe::reflection, 1, alpha, is_varied);
-  if (material.kind == Kind::plastic || (is_layered && material.metalness < 1))
+  if (material.kind == Kind::plastic ||
+      (is_layered && (material.metalness < 1 || material.metalness_texture.texture.is_valid())))
     coat_over_base = table(Lobe::coat, ior, alpha, is_varied);
   if (material.kind == Kind::glass || (is_layered && material.transmission > 0)) {
     // A pane only mirrors, to one side or the other.
