@@ -4,7 +4,7 @@
 // are small, so this is written for few instructions a bin as well as for few a primitive: the three axes are
 // swept together, each in a lane of its own.
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(__clang__)  // clang 14 refuses eight lanes where there is no AVX
 /// A box in one register of eight, where the CPU has such: (-lower, 0, upper, 0).
 struct Octet {
   using Register = float __attribute__((vector_size(32)));

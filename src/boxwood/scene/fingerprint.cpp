@@ -1,5 +1,6 @@
 #include "boxwood/scene/fingerprint.h"
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -71,7 +72,13 @@ void add(Stirrer& stirrer, const Material& material);
 void add(Stirrer& stirrer, const Camera& camera);
 void add(Stirrer& stirrer, const Sky& sky);
 void add(Stirrer& stirrer, const PointLight& light);
+void add(Stirrer& stirrer, const SpotLight& light);
 void add(Stirrer& stirrer, const DistantLight& light);
+void add(Stirrer& stirrer, const Environment& environment);
+void add(Stirrer& stirrer, const Image& image);
+void add(Stirrer& stirrer, const Texture::Operand& operand);
+void add(Stirrer& stirrer, const NumberTexture& number);
+void add(Stirrer& stirrer, const PictureSource& source);
 
 template <class T>
 void add(Stirrer& stirrer, const std::vector<T>& values) {
@@ -115,13 +122,51 @@ void add(Stirrer& stirrer, const Instance& instance) {
 }
 
 void add(Stirrer& stirrer, const Texture& texture) {
-  const auto& [name, width, height, texels, is_srgb] = texture;
-  add_all(stirrer, width, height, texels, is_srgb);
+  const auto& [name, width, height, texels, is_srgb, kind, wrap_u, wrap_v, is_inverted, first, second, amount,
+               u_axis, v_axis, offset, source] = texture;
+  add_all(stirrer, width, height, texels, is_srgb, kind, wrap_u, wrap_v, is_inverted, first, second, amount,
+          u_axis, v_axis, offset);
+  if (source) add(stirrer, *source);
+}
+
+void add(Stirrer& stirrer, const Texture::Operand& operand) {
+  const auto& [color, texture] = operand;
+  add_all(stirrer, color, texture);
+}
+
+void add(Stirrer& stirrer, const NumberTexture& number) {
+  const auto& [texture, channel] = number;
+  add_all(stirrer, texture, channel);
+}
+
+/// A picture that stays in its file is told by its size and a few texels.
+void add(Stirrer& stirrer, const PictureSource& source) {
+  add_all(stirrer, source.width(), source.height(), source.levels());
+  const int last = source.levels() - 1;
+  const int first_small = last < 3 ? 0 : last - 3;
+  const int width = std::max(source.width() >> first_small, 1),
+            height = std::max(source.height() >> first_small, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) add(stirrer, source.texel(first_small, x, y));
 }
 
 void add(Stirrer& stirrer, const Material& material) {
-  const auto& [name, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides] = material;
-  add_all(stirrer, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides);
+  const auto& [name, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides,
+               emission_texture, roughness_texture, roughness_scale, metal_eta, metal_k, reflection_color,
+               transmission_color, transmission_color_texture, is_thin, absorption, outer_absorption, opacity,
+               opacity_texture, alpha_cutoff, normal_texture, normal_scale, metalness, transmission,
+               metalness_texture, transmission_texture, specular, specular_color, specular_texture,
+               specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture,
+               sheen_color, sheen_roughness, sheen_color_texture, sheen_roughness_texture, mix_first,
+               mix_second, mix_amount, mix_texture] = material;
+  add_all(stirrer, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides,
+          emission_texture, roughness_texture, roughness_scale, metal_eta, metal_k, reflection_color,
+          transmission_color, transmission_color_texture, is_thin, absorption, outer_absorption, opacity,
+          opacity_texture, alpha_cutoff, normal_texture, normal_scale, metalness, transmission,
+          metalness_texture, transmission_texture, specular, specular_color, specular_texture,
+          specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture, sheen_color,
+          sheen_roughness, sheen_color_texture, sheen_roughness_texture, mix_first, mix_second, mix_amount,
+          mix_texture);
 }
 
 void add(Stirrer& stirrer, const Camera& camera) {
@@ -139,6 +184,21 @@ void add(Stirrer& stirrer, const PointLight& light) {
   add_all(stirrer, position, intensity);
 }
 
+void add(Stirrer& stirrer, const SpotLight& light) {
+  const auto& [position, direction, intensity, inner_cosine, outer_cosine] = light;
+  add_all(stirrer, position, direction, intensity, inner_cosine, outer_cosine);
+}
+
+void add(Stirrer& stirrer, const Image& image) {
+  const auto& [width, height, channels, pixels, channel_names] = image;
+  add_all(stirrer, width, height, channels, pixels);
+}
+
+void add(Stirrer& stirrer, const Environment& environment) {
+  const auto& [world_from_environment, radiance, scale] = environment;
+  add_all(stirrer, world_from_environment, radiance, scale);
+}
+
 void add(Stirrer& stirrer, const DistantLight& light) {
   const auto& [direction, irradiance] = light;
   add_all(stirrer, direction, irradiance);
@@ -148,9 +208,10 @@ void add(Stirrer& stirrer, const DistantLight& light) {
 
 std::uint64_t fingerprint(const SceneDesc& desc) {
   Stirrer stirrer;
-  const auto& [geometries, instances, materials, textures, point_lights, distant_lights, camera, sky, name,
-               warnings] = desc;
-  add_all(stirrer, geometries, instances, materials, textures, point_lights, distant_lights, camera, sky);
+  const auto& [geometries, instances, materials, textures, point_lights, spot_lights, distant_lights,
+               environments, camera, sky, name, warnings] = desc;
+  add_all(stirrer, geometries, instances, materials, textures, point_lights, spot_lights, distant_lights,
+          environments, camera, sky);
   return stirrer.value();
 }
 
