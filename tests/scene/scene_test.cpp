@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "boxwood/core/random.h"
+#include "boxwood/gallery/gallery.h"
 #include "scene_oracle.h"
 
 namespace boxwood {
@@ -112,6 +113,27 @@ TEST(Scene, AnswersDoNotDependOnTheBuilder) {
   textbook.leaf_size = 1;
   const Scene a(mixed_scene()), b(mixed_scene(), textbook);
   for (const Ray& ray : hard_rays(5000)) ASSERT_EQ(a.closest_hit(ray), b.closest_hit(ray));
+}
+
+// In the `best` tree long triangles are cut, and parts of them stand in many leaves.
+TEST(Scene, AnswersDoNotDependOnPartsOfTriangles) {
+  const Scene whole(gallery::make("soup:4000")), parts(gallery::make("soup:4000"), BuildOptions::best());
+  ASSERT_TRUE(parts.parts().world.triangles.has_parts());
+  ASSERT_FALSE(whole.parts().world.triangles.has_parts());
+  Random random(17);
+  std::vector<Hit> some, others;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 from = random.in_box(whole.bounds().lower, whole.bounds().upper);
+    const Ray ray{from, 0, random.direction(), kInfinity};
+    whole.all_hits(ray, some);
+    parts.all_hits(ray, others);
+    ASSERT_EQ(some, others);
+    ASSERT_EQ(whole.count_hits(ray), parts.count_hits(ray));
+    ASSERT_EQ(whole.closest_point(from), parts.closest_point(from));
+    // From a surface, where distances are all rounding.
+    const ScenePoint point = whole.closest_point(from);
+    ASSERT_EQ(whole.closest_point(point.position), parts.closest_point(point.position));
+  }
 }
 
 TEST(Scene, BatchesGiveTheSameBitsAsSingleRays) {

@@ -163,6 +163,8 @@ TYPED_TEST(ValidateWide, APrimitiveMayStandInSeveralLeavesThatCoverIt) {
   s.boxes[5].upper.x = 8;
   EXPECT_SAYS(s, "the box of primitive 5 reaches out");
   s.wide.slots[13] = PrimId(5);
+  EXPECT_SAYS(s, "block 3 names primitive 5, which stands in another leaf, but the tree has no parts");
+  s.wide.has_parts = true;
   EXPECT_EQ(s.verdict(), "");
 }
 

@@ -75,6 +75,16 @@ class PreparedRay : public RayShear {
     const float far_plane = backward_[axis] ? lower : upper;
     return {near_plane * inverse_[axis] + near_shift_[axis], far_plane * inverse_[axis] + far_shift_[axis]};
   }
+  /// The same ray for boxes that need `factor` times the slack; at least 1.
+  PreparedRay widened(float factor) const {
+    PreparedRay ray = *this;
+    for (int k = 0; k < 3; ++k) {
+      const float more = (far_shift_[k] - near_shift_[k]) * ((factor - 1) * 0.5f);
+      ray.near_shift_[k] = near_shift_[k] - more;
+      ray.far_shift_[k] = far_shift_[k] + more;
+    }
+    return ray;
+  }
   /// The constants of the slabs, as in the file's head; 0 and -+inf on an axis that culls nothing.
   Vec3 inverse() const { return inverse_; }
   Vec3 near_shift() const { return near_shift_; }

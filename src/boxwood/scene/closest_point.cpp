@@ -58,6 +58,7 @@ struct PointQuery {
   const View& view;
   Best& best;
 
+  /// Of the whole of a primitive, or of a box around wholes.
   float bound(const Box3& box) const { return distance(view.to_world(box), view.point); }
   float limit() const { return best.limit; }
   template <class S>
@@ -69,8 +70,26 @@ struct PointQuery {
   }
 };
 
+/// How far the nearest point of a triangle may be outside the part that it belongs to, after rounding: of the
+/// corners on their way into the world, and of the point itself.
+float rounding_of_points(const View& view, const Part& part) {
+  Vec3 reach = max(abs(part.bounds.lower), abs(part.bounds.upper));
+  if (view.placement) {
+    const Affine3& m = view.placement->world_from_object;
+    reach = abs(m.x) * reach.x + abs(m.y) * reach.y + abs(m.z) * reach.z + abs(m.origin);
+  }
+  return max_component(reach) * 0x1p-20f;
+}
+
 struct TrianglePointQuery : PointQuery {
   const Part& part;
+  float slack;  ///< For boxes of parts.
+
+  /// The law of gate.h holds for the box of a whole triangle; that of a part is taken as a little nearer.
+  float bound(const Box3& box) const {
+    const float least = PointQuery::bound(box);
+    return part.triangles.has_parts() ? least * (1 - 0x1p-20f) - slack : least;
+  }
   void visit(ChildRef leaf) {
     for (const simd::TriangleBlock& block : part.triangles.blocks_of(leaf))
       for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
@@ -93,7 +112,7 @@ struct ShapePointQuery : PointQuery {
 
 void search(const Scene::Parts& parts, const Part& part, const View& view, Best& best) {
   NoStatistics none;
-  TrianglePointQuery triangles{{view, best}, part};
+  TrianglePointQuery triangles{{view, best}, part, rounding_of_points(view, part)};
   detail::traverse_triangles(part.triangles, triangles, none);
   ShapePointQuery shapes{{view, best}, parts.desc, part};
   traverse(part.shape_bvh, shapes);

@@ -73,7 +73,8 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   in_blocks.block_size = kBlockWidth;  // a block is tested at the price of one triangle
   Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, in_blocks);
   boxes = {};
-  const WideBvh<W> wide = collapse<W>(bvh, executor);
+  WideBvh<W> wide = collapse<W>(bvh, executor);
+  wide.has_parts = bvh.prim_ids.size() > count;
   bvh = {};
   const simd::TriangleTree::Fetch fetch = [&](const PrimId* keys, Triangle* triangles) {
     for (int lane = 0; lane < kBlockWidth; ++lane) triangles[lane] = triangle_of_key(keys[lane]);

@@ -78,9 +78,14 @@ class TriangleQuery {
  public:
   TriangleQuery(const PreparedRay& ray, const Part& part, const Above& above, Sink& sink,
                 Statistics& statistics)
-      : ray_(ray), part_(part), above_(above), sink_(sink), statistics_(statistics) {}
+      : ray_(ray),
+        box_ray_(part.triangles.has_parts() ? ray.widened(kPartSlack) : ray),
+        part_(part),
+        above_(above),
+        sink_(sink),
+        statistics_(statistics) {}
 
-  float bound(const Box3& box) const { return ray_.bound(box); }
+  float bound(const Box3& box) const { return box_ray_.bound(box); }
   float limit() const {
     Labelled<Sink> any{sink_, {}, {}};
     return above_.gate(any).limit();
@@ -99,6 +104,7 @@ class TriangleQuery {
 
  private:
   const PreparedRay& ray_;
+  const PreparedRay box_ray_;
   const Part& part_;
   const Above& above_;
   Sink& sink_;

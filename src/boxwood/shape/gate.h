@@ -5,11 +5,31 @@
 // Box intervals are monotonic (core/prepared_ray.h), so every box around the shape contains that t, and no
 // culling can lose it. Brute force applies the same rule, and so do all the rival structures: hence *equal*,
 // for every shape, also a user's own.
+//
+// A tree with spatial splits needs more. There a leaf's box holds a part of a triangle, the interval that
+// counts is still the whole triangle's, and t might lie in the latter but beyond the former. With u and R as
+// in core/prepared_ray.h:
+//
+//  - The triangle test (shape/triangle.h) accepts a line only when it passes within 7uR, along each axis, of
+//    a point P of the triangle; and t, in units of depth, is off the depth of P by no more than E uR, where E
+//    = 24 / kEdgeOn + 3 = 771. Along no axis does the line go faster than along its longest, so its point at
+//    t is within (E + 7) uR of P.
+//  - Moving t into the interval of the whole triangle's box moves it towards P, or, where rounding makes the
+//    interval end before P, by less than the slack of that end, 12uR.
+//  - Some part's box holds P. Widened by (E + 19) uR, and 4uR + 4u|o| for the rounding of the interval
+//  itself,
+//    it holds the line's point at t. 68 times the slack of the slabs suffices; with kPartSlack times, t lies
+//    in that leaf's interval and in those of all boxes around it, so no culling can lose the crossing.
+//
+// That slack is about 2^-14 of the reach; boxes of whole triangles do not need it.
 #pragma once
 
 #include "boxwood/shape/concept.h"
 
 namespace boxwood {
+
+/// How many times the slack of its slabs a ray needs for boxes of parts.
+inline constexpr float kPartSlack = 72;
 
 /// Stands between a shape and the query's sink: moves each crossing into the interval of the shape's box and
 /// passes on those within [t_min, limit]. The limit that the shape sees is corrected for the move, so that an

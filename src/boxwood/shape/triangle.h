@@ -15,9 +15,17 @@
 //     three decides. It is antisymmetric in P and Q, thus exactly one of the two triangles at an
 //     edge, and the right number at a vertex, is crossed. Three equal signs imply area:
 //     degenerate triangles are never hit.
-//  3. t from the plane, not interpolated from the sheared depths: the latter is off by up
-//     to 0.2 on large triangles along an axis. Where the plane is seen edge-on, or floats
-//     overflow, t is interpolated in double.
+//  3. t from the plane, not interpolated from the sheared depths: with float weights the
+//     latter is off by up to 0.2 on large triangles along an axis. Where the plane is seen
+//     edge-on (kEdgeOn), or floats overflow, t is interpolated with weights in double. They
+//     are exact but for one rounding: the products are exact, and all have one sign.
+//
+// How far t may be off. Rounding moves a vertex by up to 7uR in the sheared plane (u = 2^-24, R as in
+// core/prepared_ray.h), so the line passes within 7uR of a point P of the triangle, the one with the exact
+// weights, and let z be the depth of P along the longest axis. Interpolated in double, t is within 4uR of z
+// (in units of depth: t times the direction's largest component). From the plane, errors add up to 17uR M /
+// slope and the moved vertices to 7uR M / slope, where M is the sum of the products that the normal is made
+// of: with slope > kEdgeOn M, within 24uR / kEdgeOn + 3uR. shape/gate.h builds on this.
 //
 // Invariant: every operation is a separate IEEE operation in the order written here (-ffp-contract=off),
 // because SIMD kernels repeat it and must get the same bits.
@@ -27,6 +35,10 @@
 #include "boxwood/shape/vec3d.h"
 
 namespace boxwood {
+
+/// A triangle is seen edge-on when the direction times the normal is no more than this share of the products
+/// that the normal is made of. Two rays in a thousand that hit anything see it so.
+inline constexpr float kEdgeOn = 0x1p-5f;
 
 namespace detail {
 
@@ -47,6 +59,22 @@ inline int edge_sign(Point2 p, Point2 q) {
 inline bool exact_triangle_test(Point2 a, Point2 b, Point2 c) {
   const int sa = edge_sign(b, c), sb = edge_sign(c, a), sc = edge_sign(a, b);
   return sa != 0 && sa == sb && sb == sc;
+}
+
+/// The edge functions in double: weights of the vertices, but for the sum.
+struct ExactWeights {
+  double a, b, c;
+  ExactWeights(Point2 pa, Point2 pb, Point2 pc)
+      : a(double(pb.x) * pc.y - double(pb.y) * pc.x),
+        b(double(pc.x) * pa.y - double(pc.y) * pa.x),
+        c(double(pa.x) * pb.y - double(pa.y) * pb.x) {}
+  double sum() const { return a + b + c; }
+};
+
+/// The cross product with all its products added up, whatever their signs.
+inline Vec3 cross_of_sizes(Vec3 a, Vec3 b) {
+  return {std::fabs(a.y * b.z) + std::fabs(a.z * b.y), std::fabs(a.z * b.x) + std::fabs(a.x * b.z),
+          std::fabs(a.x * b.y) + std::fabs(a.y * b.x)};
 }
 
 }  // namespace detail
@@ -80,15 +108,10 @@ inline bool intersect_triangle(const RayShear& ray, Vec3 a, Vec3 b, Vec3 c, Cros
 
   // Weights. The sum cannot be trusted where it is tiny or overflowed;
   // then the exact products decide here too.
-  double sum = float_sum;
-  double da = wa, db = wb, dc = wc;
   if (!(std::fabs(float_sum) > 0x1p-80f && std::fabs(float_sum) < 0x1p120f)) {
-    da = double(pb.x) * pc.y - double(pb.y) * pc.x;
-    db = double(pc.x) * pa.y - double(pc.y) * pa.x;
-    dc = double(pa.x) * pb.y - double(pa.y) * pb.x;
-    sum = da + db + dc;
-    crossing.u = static_cast<float>(db / sum);
-    crossing.v = static_cast<float>(dc / sum);
+    const detail::ExactWeights exact(pa, pb, pc);
+    crossing.u = static_cast<float>(exact.b / exact.sum());
+    crossing.v = static_cast<float>(exact.c / exact.sum());
   } else {
     const float inverse_sum = 1.0f / float_sum;
     crossing.u = wb * inverse_sum;
@@ -96,12 +119,17 @@ inline bool intersect_triangle(const RayShear& ray, Vec3 a, Vec3 b, Vec3 c, Cros
   }
 
   // Where the line meets the plane: n.(a - o) / (n.d), with d = (sx, sy, 1) / sz in permuted axes.
-  const Vec3 n = cross(b - a, c - a);
+  const Vec3 e1 = b - a, e2 = c - a;
+  const Vec3 n = cross(e1, e2), products = detail::cross_of_sizes(e1, e2);
   const float height = n[kx] * ta[kx] + n[ky] * ta[ky] + n[kz] * ta[kz];
   const float slope = n[kx] * sx + n[ky] * sy + n[kz];
+  const float edge_on = kEdgeOn * (products[kx] + products[ky] + products[kz]);
   float t = sz * height / slope;
-  if (!(std::fabs(slope) > 0x1p-80f) || !std::isfinite(height) || !std::isfinite(t))
-    t = static_cast<float>(sz * ((da * ta[kz] + db * tb[kz] + dc * tc[kz]) / sum));
+  if (!(std::fabs(slope) > 0x1p-80f && std::fabs(slope) > edge_on) || !std::isfinite(height) ||
+      !std::isfinite(t)) {
+    const detail::ExactWeights exact(pa, pb, pc);
+    t = static_cast<float>(sz * ((exact.a * ta[kz] + exact.b * tb[kz] + exact.c * tc[kz]) / exact.sum()));
+  }
   if (!(std::fabs(t) < kInfinity)) return false;
   crossing.t = t + 0.0f;  // -0 becomes +0
   crossing.part = 0;

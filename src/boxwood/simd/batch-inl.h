@@ -47,7 +47,8 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
     };
     for (std::size_t i = begin; i < end;) {
       const std::size_t group = std::min(end - i, std::size_t(kBundle));
-      if (group == kBundle && may_be_bundle(&rays[i]) && bundles[bundle_count].prepare(&rays[i], bounds)) {
+      if (group == kBundle && may_be_bundle(&rays[i]) &&
+          bundles[bundle_count].prepare(&rays[i], bounds, tree.box_slack())) {
         bundle_begin[bundle_count++] = i;
         if (bundle_count == 2) trace();
       } else {
@@ -61,12 +62,12 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
     const std::span<const std::uint32_t> rest(order, count);
     if (tree.max_stack() + kWidth <= kShortStack) {
       static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
-      Interleaved<kAny, decltype(output)>(pool, bounds, rays.data(), rest, output, unusual).run(flight.get());
+      Interleaved<kAny, decltype(output)>(tree, bounds, rays.data(), rest, output, unusual).run(flight.get());
       continue;
     }
     for (const std::uint32_t i : rest) {
       KernelRay ray;
-      if (!prepare(rays[i], bounds, ray)) {
+      if (!prepare(rays[i], bounds, tree.box_slack(), ray)) {
         unusual.push_back(i);
         continue;
       }

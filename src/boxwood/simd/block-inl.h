@@ -92,9 +92,11 @@ HWY_INLINE std::uint32_t test_planes(const TriangleBlock& block, const KernelRay
   const V4 ax = row(x, 0), ay = row(y, 0), az = row(z, 0);
   const V4 e1x = hn::Sub(row(x, 1), ax), e1y = hn::Sub(row(y, 1), ay), e1z = hn::Sub(row(z, 1), az);
   const V4 e2x = hn::Sub(row(x, 2), ax), e2y = hn::Sub(row(y, 2), ay), e2z = hn::Sub(row(z, 2), az);
-  const V4 nx = hn::Sub(hn::Mul(e1y, e2z), hn::Mul(e1z, e2y));
-  const V4 ny = hn::Sub(hn::Mul(e1z, e2x), hn::Mul(e1x, e2z));
-  const V4 nz = hn::Sub(hn::Mul(e1x, e2y), hn::Mul(e1y, e2x));
+  const V4 yz = hn::Mul(e1y, e2z), zy = hn::Mul(e1z, e2y), zx = hn::Mul(e1z, e2x), xz = hn::Mul(e1x, e2z),
+           xy = hn::Mul(e1x, e2y), yx = hn::Mul(e1y, e2x);
+  const V4 nx = hn::Sub(yz, zy), ny = hn::Sub(zx, xz), nz = hn::Sub(xy, yx);
+  const V4 products = hn::Add(hn::Add(hn::Add(hn::Abs(yz), hn::Abs(zy)), hn::Add(hn::Abs(zx), hn::Abs(xz))),
+                              hn::Add(hn::Abs(xy), hn::Abs(yx)));
   const V4 tx = hn::Sub(hn::Set(d, ray.origin[0]), ax), ty = hn::Sub(hn::Set(d, ray.origin[1]), ay),
            tz = hn::Sub(hn::Set(d, ray.origin[2]), az);
   const V4 height = hn::Add(hn::Add(hn::Mul(nx, tx), hn::Mul(ny, ty)), hn::Mul(nz, tz));
@@ -102,8 +104,8 @@ HWY_INLINE std::uint32_t test_planes(const TriangleBlock& block, const KernelRay
   V4 t = hn::Add(hn::Div(hn::Mul(minus_sz, height), slope), hn::Zero(d));
 
   // What the scalar test would take through its exact branches goes there.
-  const auto ordinary =
-      hn::And(hn::Lt(hn::Abs(t), hn::Set(d, kInfinity)), hn::Gt(hn::Abs(slope), hn::Set(d, 0x1p-80f)));
+  const V4 edge_on = hn::Max(hn::Mul(products, hn::Set(d, kEdgeOn)), hn::Set(d, 0x1p-80f));
+  const auto ordinary = hn::And(hn::Lt(hn::Abs(t), hn::Set(d, kInfinity)), hn::Gt(hn::Abs(slope), edge_on));
   std::uint32_t lanes = crossed.surely & mask_bits(d, ordinary);
   if (HWY_UNLIKELY(lanes != crossed.maybe)) {
     hn::Store(t, d, ts);

@@ -41,7 +41,7 @@ class Bundle {
   /// Written out: gcc compiles an implicit one for the plain machine, where vectors cannot be made.
   HWY_INLINE Bundle() {}
   /// Takes kBundle rays; false when they do not go the same way, or are not all ordinary.
-  HWY_INLINE bool prepare(const Ray* rays, const Box3& bounds) {
+  HWY_INLINE bool prepare(const Ray* rays, const Box3& bounds, float box_slack) {
     const DB d;
     VB dir[3], t_min, t_max;
     load(rays, origin_, t_min, dir, t_max);
@@ -102,14 +102,15 @@ class Bundle {
       const VB error =
           hn::Add(hn::Mul(hn::Set(d, 12 * u), reach), hn::Mul(hn::Set(d, 8 * u), hn::Abs(origin_[k])));
       const VB slack = hn::Add(hn::Mul(hn::Abs(r), hn::Add(error, tiny)), tiny);
-      const VB box_slack = hn::Add(hn::Mul(slack, hn::Set(d, 1.5f)), hn::Set(d, 0x1p-120f));
+      const VB wide_slack = hn::Add(hn::Mul(slack, hn::Set(d, box_slack)), hn::Set(d, 0x1p-120f));
       const VB shift = hn::Neg(hn::Mul(origin_[k], r));
       inverse_[k] = r;
-      near_shift_[k] = hn::Sub(shift, box_slack);
-      far_shift_[k] = hn::Add(shift, box_slack);
+      near_shift_[k] = hn::Sub(shift, wide_slack);
+      far_shift_[k] = hn::Add(shift, wide_slack);
       gate_near_shift_[k] = hn::Sub(shift, slack);
       gate_far_shift_[k] = hn::Add(shift, slack);
-      set_interval(k, Range(origin_[k]), Range(r), hn::GetLane(hn::MaxOfLanes(d, slack)));
+      set_interval(k, Range(origin_[k]), Range(r),
+                   hn::GetLane(hn::MaxOfLanes(d, slack)) * (box_slack + 0.5f));
     }
     limit_ = hn::Add(t_max, hn::Zero(d));
     first_t_ = hn::GetLane(hn::MinOfLanes(d, t_min_));
@@ -181,13 +182,14 @@ class Bundle {
   static constexpr std::int32_t kNoKey = std::numeric_limits<std::int32_t>::max();
 
   /// The constants with which no plane is met before the first ray meets it, nor left after the last has left
-  /// it. The products are taken at both ends of the interval; the slack is doubled for their rounding.
+  /// it. The products are taken at both ends of the interval; the slack is half as large again for their
+  /// rounding.
   HWY_INLINE void set_interval(int k, Range origins, Range inverses, float slack) {
     const DW d;
     const bool is_backward = inverses.high < 0;
     const float near_origin = is_backward ? origins.low : origins.high;
     const float far_origin = is_backward ? origins.high : origins.low;
-    slack = slack * 2 + 0x1p-120f;
+    slack += 0x1p-120f;
     low_inverse_[k] = hn::Set(d, inverses.low);
     high_inverse_[k] = hn::Set(d, inverses.high);
     near_low_[k] = hn::Set(d, -near_origin * inverses.low - slack);
@@ -279,6 +281,7 @@ class Bundle {
   /// the triangle test, and boxes.
   struct Faces {
     HWY_ALIGN float normal[3][kBlockWidth];
+    HWY_ALIGN float edge_on[kBlockWidth];  // the steepest slope that is edge-on
     HWY_ALIGN float bounds[3][2][kBlockWidth];
 
     HWY_INLINE Faces(const TriangleBlock& block, const int (&axis)[3]) {
@@ -290,10 +293,15 @@ class Bundle {
         e1[i] = hn::Sub(row(1, axis[i]), a);
         e2[i] = hn::Sub(row(2, axis[i]), a);
       }
+      V4 products[3];
       for (int i = 0; i < 3; ++i) {
         const int p = (i + 1) % 3, q = (i + 2) % 3;
-        hn::Store(hn::Sub(hn::Mul(e1[p], e2[q]), hn::Mul(e1[q], e2[p])), d, normal[i]);
+        const V4 pq = hn::Mul(e1[p], e2[q]), qp = hn::Mul(e1[q], e2[p]);
+        hn::Store(hn::Sub(pq, qp), d, normal[i]);
+        products[i] = hn::Add(hn::Abs(pq), hn::Abs(qp));
       }
+      const V4 all = hn::Add(hn::Add(products[0], products[1]), products[2]);
+      hn::Store(hn::Max(hn::Mul(all, hn::Set(d, kEdgeOn)), hn::Set(d, 0x1p-80f)), d, edge_on);
       for (int k = 0; k < 3; ++k) {
         const V4 a = row(0, k), b = row(1, k), c = row(2, k);
         hn::Store(hn::Min(a, hn::Min(b, c)), d, bounds[k][0]);
@@ -317,7 +325,7 @@ class Bundle {
     VB t = hn::Add(hn::Div(hn::Mul(hn::Neg(shear_[2]), height), slope), hn::Zero(d));
     const auto ordinary =
         hn::And(hn::And(hn::Lt(hn::Abs(t), hn::Set(d, kInfinity)), hn::Gt(product, hn::Zero(d))),
-                hn::Gt(hn::Abs(slope), hn::Set(d, 0x1p-80f)));
+                hn::Gt(hn::Abs(slope), hn::Set(d, faces.edge_on[lane])));
     auto crossed = hn::And(maybe, ordinary);
     const auto undecided = hn::AndNot(ordinary, maybe);
     if (HWY_UNLIKELY(!hn::AllFalse(d, undecided)))

@@ -50,9 +50,15 @@ template <bool kAny, class Output>
 class Interleaved {
  public:
   /// Traces rays[i] for each i of `order`.
-  Interleaved(const char* pool, const Box3& bounds, const Ray* rays, std::span<const std::uint32_t> order,
-              const Output& output, std::vector<std::uint32_t>& unusual)
-      : pool_(pool), bounds_(bounds), rays_(rays), order_(order), output_(output), unusual_(unusual) {}
+  Interleaved(const TriangleTree& tree, const Box3& bounds, const Ray* rays,
+              std::span<const std::uint32_t> order, const Output& output, std::vector<std::uint32_t>& unusual)
+      : pool_(tree.pool()),
+        box_slack_(tree.box_slack()),
+        bounds_(bounds),
+        rays_(rays),
+        order_(order),
+        output_(output),
+        unusual_(unusual) {}
 
   void run(RayInFlight* flight) {
     List nodes{lists_[kNode]}, leaves{lists_[kLeaf]}, done{lists_[kDone]};
@@ -108,7 +114,7 @@ class Interleaved {
     while (next_ < order_.size()) {
       const std::uint32_t i = order_[next_++];
       __builtin_prefetch(&rays_[i] + 8);  // neighbours in the order are mostly neighbours in memory
-      if (HWY_UNLIKELY(!prepare(rays_[i], bounds_, place.ray))) {
+      if (HWY_UNLIKELY(!prepare(rays_[i], bounds_, box_slack_, place.ray))) {
         unusual_.push_back(i);
         continue;
       }
@@ -186,6 +192,7 @@ class Interleaved {
   }
 
   const char* pool_;
+  float box_slack_;
   const Box3& bounds_;
   const Ray* rays_;
   std::span<const std::uint32_t> order_;

@@ -15,7 +15,7 @@ namespace boxwood::simd::HWY_NAMESPACE {
 
 bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit) {
   KernelRay kernel_ray;
-  if (!prepare(ray, bounds, kernel_ray)) return false;
+  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
   hit = {ray.t_max + 0.0f};
   closest_hit_one(tree.pool(), kernel_ray, Direct{}, hit);
   if (!hit.is_hit()) hit.t = kInfinity;
@@ -25,7 +25,7 @@ bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, T
 bool closest_full_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit,
                       Hit& full) {
   KernelRay kernel_ray;
-  if (!prepare(ray, bounds, kernel_ray)) return false;
+  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
   hit = {ray.t_max + 0.0f};
   closest_hit_one(tree.pool(), kernel_ray, Direct{}, hit);
   if (hit.is_hit())
@@ -37,14 +37,14 @@ bool closest_full_hit(const TriangleTree& tree, const Ray& ray, const Box3& boun
 
 bool any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit) {
   KernelRay kernel_ray;
-  if (!prepare(ray, bounds, kernel_ray)) return false;
+  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
   is_hit = any_hit_one(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f);
   return true;
 }
 
 bool all_hits(const TriangleTree& tree, const Ray& ray, const Box3& bounds, std::vector<TriangleHit>& hits) {
   KernelRay kernel_ray;
-  if (!prepare(ray, bounds, kernel_ray)) return false;
+  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
   all_hits_one(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f, hits);
   return true;
 }
@@ -53,7 +53,7 @@ bool placed_closest_hit(const TriangleTree& tree, const PreparedRay& ray, const 
                         TriangleHit& hit) {
   if (!is_ordinary(ray, tree.box())) return false;
   hit = {t_max + 0.0f};
-  closest_hit_one(tree.pool(), KernelRay(ray), Moved{passage}, hit);
+  closest_hit_one(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, hit);
   if (!hit.is_hit()) hit.t = kInfinity;
   return true;
 }
@@ -61,14 +61,14 @@ bool placed_closest_hit(const TriangleTree& tree, const PreparedRay& ray, const 
 bool placed_any_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
                     bool& is_hit) {
   if (!is_ordinary(ray, tree.box())) return false;
-  is_hit = any_hit_one(tree.pool(), KernelRay(ray), Moved{passage}, t_max + 0.0f);
+  is_hit = any_hit_one(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f);
   return true;
 }
 
 bool placed_all_hits(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
                      std::vector<TriangleHit>& hits) {
   if (!is_ordinary(ray, tree.box())) return false;
-  all_hits_one(tree.pool(), KernelRay(ray), Moved{passage}, t_max + 0.0f, hits);
+  all_hits_one(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f, hits);
   return true;
 }
 

@@ -2,9 +2,9 @@
 //
 // The constants of core/prepared_ray.h, worked out by vectors with the same operations and so the same bits;
 // and a second pair of shifts for boxes. A box test may fuse multiply and add, because it only has to be
-// conservative: its slack is half as large again, which is more than fusing can change, so a box is never
-// left earlier nor entered later than the unfused interval of any box inside it, and the law of shape/gate.h
-// holds.
+// conservative: its slack is half as large again or more (TriangleTree::box_slack), which is more than fusing
+// can change, so a box is never left earlier nor entered later than the unfused interval of any box inside
+// it, and the law of shape/gate.h holds.
 //
 // Kernels take ordinary rays only: finite, and of a size at which nothing in a leaf test can overflow. The
 // rest is rare and goes to plain C++ (scene/walk.h over query/traverse_wide.h).
@@ -58,15 +58,15 @@ struct alignas(64) KernelRay {
 
   KernelRay() = default;
 
-  /// From a ray that was prepared before; its t_min may be negative.
-  explicit KernelRay(const PreparedRay& ray) : t_min(ray.t_min) {
+  /// From a ray that was prepared before, for boxes of that slack; its t_min may be negative.
+  KernelRay(const PreparedRay& ray, float box_slack) : t_min(ray.t_min) {
     const int axes[3] = {ray.axis_x, ray.axis_y, ray.axis_z};
     const float constants[3] = {ray.shear_x, ray.shear_y, ray.shear_z};
     for (int k = 0; k < 3; ++k) {
-      // The slack once more by half, from the distance of the shifts, which is twice the slack.
+      // The distance of the shifts is twice the slack.
       gate_near_shift[k] = ray.near_shift()[k];
       gate_far_shift[k] = ray.far_shift()[k];
-      const float more = (gate_far_shift[k] - gate_near_shift[k]) * 0.25f + 0x1p-120f;
+      const float more = (gate_far_shift[k] - gate_near_shift[k]) * ((box_slack - 1) * 0.5f) + 0x1p-120f;
       inverse[k] = ray.inverse()[k];
       near_shift[k] = gate_near_shift[k] - more;
       far_shift[k] = gate_far_shift[k] + more;
@@ -114,9 +114,9 @@ HWY_INLINE V4 largest(V4 v) {
   return hn::Max(v, hn::Shuffle1032(v));
 }
 
-/// Prepares `ray` for a tree inside `bounds` (TriangleTree::is_ordinary()); false when the ray is not
-/// ordinary.
-HWY_INLINE bool prepare(const Ray& ray, const Box3& bounds, KernelRay& out) {
+/// Prepares `ray` for a tree inside `bounds` (TriangleTree::is_ordinary()) whose boxes need `box_slack`;
+/// false when the ray is not ordinary.
+HWY_INLINE bool prepare(const Ray& ray, const Box3& bounds, float box_slack, KernelRay& out) {
   const D4 d;
   const DI4 di;
   const V4 o = without_fourth(hn::LoadU(d, &ray.origin.x)),
@@ -142,11 +142,11 @@ HWY_INLINE bool prepare(const Ray& ray, const Box3& bounds, KernelRay& out) {
   const V4 r = hn::Div(hn::Set(d, 1.0f), hn::CopySign(hn::Max(abs_dir, least), dir));
   const V4 error = hn::Add(hn::Mul(hn::Set(d, 12 * u), reach), hn::Mul(hn::Set(d, 8 * u), abs_o));
   const V4 slack = hn::Add(hn::Mul(hn::Abs(r), hn::Add(error, tiny)), tiny);
-  const V4 box_slack = hn::Add(hn::Mul(slack, hn::Set(d, 1.5f)), hn::Set(d, 0x1p-120f));
+  const V4 wide_slack = hn::Add(hn::Mul(slack, hn::Set(d, box_slack)), hn::Set(d, 0x1p-120f));
   const V4 shift = hn::Neg(hn::Mul(o, r));
   hn::Store(r, d, out.inverse);
-  hn::Store(hn::Sub(shift, box_slack), d, out.near_shift);
-  hn::Store(hn::Add(shift, box_slack), d, out.far_shift);
+  hn::Store(hn::Sub(shift, wide_slack), d, out.near_shift);
+  hn::Store(hn::Add(shift, wide_slack), d, out.far_shift);
   hn::Store(hn::Sub(shift, slack), d, out.gate_near_shift);
   hn::Store(hn::Add(shift, slack), d, out.gate_far_shift);
   HWY_ALIGN constexpr std::int32_t kLowerRows[4] = {0, 2 * kRowBytes, 4 * kRowBytes, 0};

@@ -43,7 +43,11 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> tri
 
 template <int W>
 TriangleTree::TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Executor& executor)
-    : node_count_(wide.nodes.size()), block_count_(wide.block_count()), width_(W), box_(wide.box) {
+    : node_count_(wide.nodes.size()),
+      block_count_(wide.block_count()),
+      width_(W),
+      has_parts_(wide.has_parts),
+      box_(wide.box) {
   if (wide.is_empty()) return;
   blocks_at_ = node_count_ * sizeof(WideNode<W>);
   const std::size_t size = blocks_at_ + block_count_ * sizeof(TriangleBlock);
@@ -90,6 +94,7 @@ template <int W>
 WideBvh<W> TriangleTree::unpack() const {
   WideBvh<W> wide;
   wide.box = box_;
+  wide.has_parts = has_parts_;
   const std::span<const WideNode<W>> packed = nodes<W>();
   wide.nodes.assign(packed.begin(), packed.end());
   const auto from_units = [&](ChildRef ref) {

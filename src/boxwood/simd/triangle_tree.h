@@ -10,6 +10,7 @@
 #include <span>
 
 #include "boxwood/core/parallel.h"
+#include "boxwood/shape/gate.h"
 #include "boxwood/shape/triangle.h"
 #include "boxwood/simd/huge_buffer.h"
 #include "boxwood/tree/wide.h"
@@ -52,6 +53,11 @@ class TriangleTree {
   bool is_empty() const { return pool_.size() == 0; }
   /// Whether no float of a kernel can overflow among these triangles and ordinary rays.
   bool is_ordinary() const { return is_ordinary_; }
+  /// Whether a triangle may stand in several leaves.
+  bool has_parts() const { return has_parts_; }
+  /// How many times the slack of a ray's slabs (core/prepared_ray.h) a kernel must give the boxes. Half of it
+  /// once more is more than fusing multiply and add can change; for boxes of parts see shape/gate.h.
+  float box_slack() const { return has_parts_ ? kPartSlack : 1.5f; }
   /// The most children that a walk ever leaves behind for later.
   int max_stack() const { return max_stack_; }
   int width() const { return width_; }
@@ -95,7 +101,7 @@ class TriangleTree {
   HugeBuffer pool_;
   std::size_t blocks_at_ = 0, node_count_ = 0, block_count_ = 0;
   int width_ = 8, max_stack_ = 0;
-  bool is_ordinary_ = true;
+  bool is_ordinary_ = true, has_parts_ = false;
   Box3 box_;
 };
 

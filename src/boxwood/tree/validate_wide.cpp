@@ -73,7 +73,8 @@ std::string check_boxes(const WideBvh<W>& wide) {
 template <int W>
 std::string check_primitives(const WideBvh<W>& wide, std::span<const Box3> boxes) {
   std::vector<Box3> reach(boxes.size());  // of the leaves that a primitive stands in, together
-  std::vector<std::uint32_t> last_leaf(boxes.size(), 0xffffffffu);
+  constexpr std::uint32_t kNoLeaf = 0xffffffffu;
+  std::vector<std::uint32_t> last_leaf(boxes.size(), kNoLeaf);
   for (std::size_t i = 0; i < wide.nodes.size(); ++i)
     for (int c = 0; c < W; ++c) {
       const ChildRef leaf = wide.nodes[i].children[c];
@@ -90,15 +91,18 @@ std::string check_primitives(const WideBvh<W>& wide, std::span<const Box3> boxes
           if (last_leaf[prim] == leaf.index())
             return "block " + text(b) + " names primitive " + text(prim) +
                    ", which stands in its leaf already";
-          last_leaf[prim] = leaf.index();
           if (!boxes[prim].is_empty() && !leaf_box.overlaps(boxes[prim]))
             return child_text(i, c) + " is a leaf whose box does not touch primitive " + text(prim);
+          if (last_leaf[prim] != kNoLeaf && !wide.has_parts)
+            return "block " + text(b) + " names primitive " + text(prim) +
+                   ", which stands in another leaf, but the tree has no parts";
+          last_leaf[prim] = leaf.index();
           reach[prim].extend(leaf_box);
         }
     }
   for (std::size_t prim = 0; prim < boxes.size(); ++prim) {
     if (boxes[prim].is_empty()) continue;
-    if (last_leaf[prim] == 0xffffffffu) return "no leaf holds primitive " + text(prim);
+    if (last_leaf[prim] == kNoLeaf) return "no leaf holds primitive " + text(prim);
     if (!reach[prim].contains(boxes[prim]))
       return "the box of primitive " + text(prim) + " reaches out of the leaves that it stands in";
   }

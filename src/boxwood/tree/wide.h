@@ -12,7 +12,8 @@
 //  3. An empty child has the empty box, so that no ray enters it.
 //  4. The box of a child holds the boxes below it; each block belongs to one leaf.
 //  5. Each primitive with a box that is not empty stands in one block, inside the box of its leaf; in a tree
-//     with spatial splits it may stand in several leaves, whose boxes together reach from end to end of it.
+//     with spatial splits (has_parts) it may stand in several leaves, whose boxes together reach from end to
+//     end of it.
 //  6. No node lies deeper than kMaxWideDepth, so that a query can keep its stack in a fixed array.
 #pragma once
 
@@ -89,6 +90,7 @@ struct WideBvh {
   std::vector<WideNode<W>> nodes;
   std::vector<PrimId> slots;  ///< kBlockWidth for each block.
   Box3 box;
+  bool has_parts = false;  ///< Whether a primitive may stand in several leaves; queries must know.
 
   bool is_empty() const { return nodes.empty(); }
   std::size_t block_count() const { return slots.size() / kBlockWidth; }
