@@ -118,9 +118,9 @@ Bvh build(std::span<const Box3> boxes, const Clip& clip, const BuildOptions& opt
 
   for (std::size_t i = 0; i < boxes.size(); ++i) check_box(boxes, i);
 
-  // Whether pieces pay is known only from trees, quick ones will do: in a room of large walls they do not.
+  // Whether pieces pay is known only from trees; quick ones will do.
+  if (!may_pay_to_split(boxes, executor)) return build(boxes, options);
   const Pieces pieces = split_spatially(boxes, clip, options.split_share, executor);
-  if (pieces.boxes.size() - boxes.size() < boxes.size() / 100) return build(boxes, options);
   BuildOptions part = options;
   part.method = Method::ploc;
   part.reinsertion_rounds = 0;

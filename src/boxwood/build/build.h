@@ -25,9 +25,9 @@ Bvh build(std::span<const Box3> boxes, const BuildOptions& options = {});
 
 /// The same with spatial splits: `clip` tells the boxes of parts of primitives (spatial_split.h), and those
 /// that it pays to cut, up to options.split_share, stand in several leaves: their numbers repeat in prim_ids,
-/// though not within one leaf. Builds with and without, and keeps the tree of lower SAH cost, for twice the
-/// time. A query that reports crossings one by one must expect each as often. An exception from `clip` is
-/// passed on.
+/// though not within one leaf. Where cuts may pay, builds quick trees with and without them and goes on with
+/// what has the lower SAH cost. A query that reports crossings one by one must expect each as often. An
+/// exception from `clip` is passed on.
 Bvh build(std::span<const Box3> boxes, const Clip& clip, const BuildOptions& options);
 
 /// How much memory build() with these options, their executor among them, allocates at most for `count`

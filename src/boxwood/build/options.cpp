@@ -30,7 +30,7 @@ BuildOptions BuildOptions::best() {
           .bins = 32,
           .reinsertion_rounds = 8,
           .reinsertion_share = 0.01f,
-          .split_share = 0.3f};
+          .split_share = 0.15f};
 }
 
 }  // namespace boxwood

@@ -20,6 +20,45 @@ struct Plane {
   float place = 0;
 };
 
+double area(const Box3& box) {
+  const double x = double(box.upper.x) - box.lower.x, y = double(box.upper.y) - box.lower.y,
+               z = double(box.upper.z) - box.lower.z;
+  return x * y + y * z + z * x;
+}
+
+/// The half area without the largest side: what a box has beyond a flat one. Walls and floors fill their
+/// boxes as well as anything does, and their pieces would only swell the nodes of what stands before them.
+double bulk(const Box3& box) {
+  if (box.is_empty()) return 0;
+  const double x = double(box.upper.x) - box.lower.x, y = double(box.upper.y) - box.lower.y,
+               z = double(box.upper.z) - box.lower.z;
+  return x * y + y * z + z * x - std::max(x * y, std::max(y * z, z * x));
+}
+
+/// The sum of weight(i) over all boxes that are not empty: by blocks, so that it is the same for any number
+/// of threads.
+template <class Weight>
+double sum_over(std::span<const Box3> boxes, Executor& executor, const Weight& weight) {
+  std::vector<double> sums((boxes.size() + kBlock - 1) / kBlock, 0);
+  parallel_for(executor, 0, sums.size(), 1, [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(boxes.size(), (block + 1) * kBlock); ++i)
+      if (!boxes[i].is_empty()) sums[block] += weight(i);
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+Box3 bounds_of(std::span<const Box3> boxes) {
+  Box3 bounds;
+  for (const Box3& box : boxes)
+    if (!box.is_empty()) bounds.extend(box);
+  return bounds;
+}
+
+/// Primitives with more bulk than this are worth a look.
+double mean_bulk(std::span<const Box3> boxes, Executor& executor) {
+  return sum_over(boxes, executor, [&](std::size_t i) { return bulk(boxes[i]); }) / double(boxes.size());
+}
+
 class Splitter {
  public:
   Splitter(const Box3& bounds, const Clip& clip) : bounds_(bounds), clip_(clip) {
@@ -47,17 +86,15 @@ class Splitter {
     return best;
   }
 
-  /// How much a primitive should be cut, in any unit; and without looking at it, if cuts spared everything.
+  /// How much a primitive should be cut, in any unit.
   double priority(PrimId id, const Box3& box) const {
     const Plane plane = best_plane(box);
     if (plane.axis < 0) return 0;
     Box3 left, right;
     cut(id, box, plane, left, right);
-    return priority(plane, bulk(box) - bulk(left) - bulk(right));
-  }
-  double highest_priority(const Box3& box) const {
-    const Plane plane = best_plane(box);
-    return plane.axis < 0 ? 0 : priority(plane, bulk(box));
+    const double spared = bulk(box) - bulk(left) - bulk(right);
+    const double share_of_scene = spared / (size_ * size_) * (double(1u << plane.level) / kCells);
+    return spared > 0 ? std::cbrt(static_cast<float>(share_of_scene)) : 0;
   }
 
   /// Appends the pieces of `box` after at most `cuts` cuts.
@@ -78,18 +115,6 @@ class Splitter {
   }
 
  private:
-  double priority(const Plane& plane, double spared) const {
-    const double share_of_scene = spared / (size_ * size_) * (double(1u << plane.level) / kCells);
-    return spared > 0 ? std::cbrt(static_cast<float>(share_of_scene)) : 0;
-  }
-  /// The half area without the largest side: what a box has beyond a flat one. Walls and floors fill their
-  /// boxes as well as anything does, and their pieces would only swell the nodes of what stands before them.
-  static double bulk(const Box3& box) {
-    if (box.is_empty()) return 0;
-    const double x = double(box.upper.x) - box.lower.x, y = double(box.upper.y) - box.lower.y,
-                 z = double(box.upper.z) - box.lower.z;
-    return x * y + y * z + z * x - std::max(x * y, std::max(y * z, z * x));
-  }
   static double longest_side(const Box3& box) { return max_component(box.upper * 0.5f - box.lower * 0.5f); }
   std::uint32_t cell(float x, int axis) const {
     const double place = (double(x) - bounds_.lower[axis]) * cells_per_length_;
@@ -109,30 +134,27 @@ class Splitter {
 
 }  // namespace
 
+bool may_pay_to_split(std::span<const Box3> boxes, Executor& executor) {
+  constexpr double kBoxesOnALine = 8, kShareOfArea = 0.25;
+  const double all = sum_over(boxes, executor, [&](std::size_t i) { return area(boxes[i]); });
+  const Box3 bounds = bounds_of(boxes);
+  if (bounds.is_empty() || all < kBoxesOnALine * area(bounds)) return false;
+  const double mean = mean_bulk(boxes, executor);
+  const double bulky =
+      sum_over(boxes, executor, [&](std::size_t i) { return bulk(boxes[i]) > mean ? area(boxes[i]) : 0.0; });
+  return bulky >= kShareOfArea * all && bulky > 0;
+}
+
 Pieces split_spatially(std::span<const Box3> boxes, const Clip& clip, float share, Executor& executor) {
-  Box3 bounds;
-  for (const Box3& box : boxes)
-    if (!box.is_empty()) bounds.extend(box);
-  const Splitter splitter(bounds, clip);
+  const Splitter splitter(bounds_of(boxes), clip);
   const std::size_t blocks = (boxes.size() + kBlock - 1) / kBlock;
   const auto block_end = [&](std::size_t block) { return std::min(boxes.size(), (block + 1) * kBlock); };
 
-  // Weigh all primitives by what a cut could spare at most, then those above the average by what it does
-  // spare; the others would not get a cut. Sums by blocks, so that they are the same for any number of
-  // threads.
+  // Weigh the bulky ones.
   std::vector<double> priority(boxes.size());
-  const auto weigh = [&](const auto& weight) {
-    std::vector<double> sums(blocks, 0);
-    parallel_for(executor, 0, blocks, 1, [&](std::size_t block) {
-      for (std::size_t i = block * kBlock; i < block_end(block); ++i)
-        if (!boxes[i].is_empty()) sums[block] += priority[i] = weight(i);
-    });
-    return std::accumulate(sums.begin(), sums.end(), 0.0);
-  };
-  const double average =
-      weigh([&](std::size_t i) { return splitter.highest_priority(boxes[i]); }) / double(boxes.size());
-  const double sum = weigh([&](std::size_t i) {
-    return priority[i] > average ? splitter.priority(PrimId(i), boxes[i]) : priority[i];
+  const double mean = mean_bulk(boxes, executor);
+  const double sum = sum_over(boxes, executor, [&](std::size_t i) {
+    return priority[i] = bulk(boxes[i]) > mean ? splitter.priority(PrimId(i), boxes[i]) : 0;
   });
 
   // Deal out the cuts, rounded down; then cut.

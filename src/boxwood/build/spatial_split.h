@@ -28,7 +28,11 @@ struct Pieces {
   std::vector<PrimId> owners;
 };
 
-/// At most share * boxes.size() cuts.
+/// Whether cuts may be worth their price: a line through the scene meets many boxes, and those are mostly of
+/// primitives with bulk, not of walls or of an even mesh.
+bool may_pay_to_split(std::span<const Box3> boxes, Executor& executor);
+
+/// At most share * boxes.size() cuts, all in primitives with more bulk than the average.
 Pieces split_spatially(std::span<const Box3> boxes, const Clip& clip, float share, Executor& executor);
 
 }  // namespace boxwood
