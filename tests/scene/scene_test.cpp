@@ -117,12 +117,12 @@ TEST(Scene, AnswersDoNotDependOnTheBuilder) {
 
 // In the `best` tree long triangles are cut, and parts of them stand in many leaves.
 TEST(Scene, AnswersDoNotDependOnPartsOfTriangles) {
-  const Scene whole(gallery::make("soup:4000")), parts(gallery::make("soup:4000"), BuildOptions::best());
+  const Scene whole(gallery::make("soup:40000")), parts(gallery::make("soup:40000"), BuildOptions::best());
   ASSERT_TRUE(parts.parts().world.triangles.has_parts());
   ASSERT_FALSE(whole.parts().world.triangles.has_parts());
   Random random(17);
   std::vector<Hit> some, others;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     const Vec3 from = random.in_box(whole.bounds().lower, whole.bounds().upper);
     const Ray ray{from, 0, random.direction(), kInfinity};
     whole.all_hits(ray, some);

@@ -65,7 +65,7 @@ struct DeepTree {
 
 std::vector<Ray> rays_along_x() {
   std::vector<Ray> rays;
-  for (int i = 0; i < 64; ++i)  // neighbours, for the bundles
+  for (int i = 0; i < 20; ++i)  // neighbours, for the bundles
     rays.push_back({{-1, 0.001f * float(i), 0.002f * float(i % 8)}, 0, {1, 0, 0}, kInfinity});
   return rays;
 }

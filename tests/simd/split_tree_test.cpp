@@ -123,7 +123,7 @@ void expect_nothing_lost(const SplitTriangles& split, std::vector<Ray> rays) {
 
 TEST(KernelSplitTrees, LargeTrianglesSeenEdgeOn) {
   Random random(31);
-  for (int round = 0; round < 60 && !testing::Test::HasFailure(); ++round) {
+  for (int round = 0; round < 30 && !testing::Test::HasFailure(); ++round) {
     SCOPED_TRACE(round);
     SplitTriangles split;
     for (std::uint32_t i = 0; i < 1u + static_cast<std::uint32_t>(round) % 3; ++i) {

@@ -135,7 +135,7 @@ class Splitter {
 }  // namespace
 
 bool may_pay_to_split(std::span<const Box3> boxes, Executor& executor) {
-  constexpr double kBoxesOnALine = 8, kShareOfArea = 0.25;
+  constexpr double kBoxesOnALine = 6, kShareOfArea = 0.25;
   const double all = sum_over(boxes, executor, [&](std::size_t i) { return area(boxes[i]); });
   const Box3 bounds = bounds_of(boxes);
   if (bounds.is_empty() || all < kBoxesOnALine * area(bounds)) return false;
