@@ -4,7 +4,7 @@
 
 PROGRAM := build/release/boxwood
 
-.PHONY: help setup build demo test test-arm check fuzz bench microbench format docs clean
+.PHONY: help setup build demo test wheel test-python test-arm check fuzz bench microbench format docs clean
 .DEFAULT_GOAL := help
 
 help:    ## This list.
@@ -21,10 +21,17 @@ demo: build  ## Render the default scene to out/demo.png.
 	@mkdir -p out
 	$(PROGRAM) render stilllife -o out/demo.png
 
-test: setup  ## Build everything and run every test.
+test: setup  ## Build everything and run every test, the Python ones too.
 	cmake --preset release
 	cmake --build --preset release
 	tools/run_tests.py build/release
+	tools/test_wheel.sh
+
+wheel: setup  ## Build the Python wheel, with its libraries: build/python/dist/.
+	tools/build_wheel.sh
+
+test-python: setup  ## Build the wheel, install it into a clean virtual environment, and run the Python tests.
+	tools/test_wheel.sh
 
 test-arm:  ## Build the kernels and their tests for 64-bit ARM, and run them under QEMU.
 	tools/test_arm.sh

@@ -14,6 +14,8 @@ ninja-build           the build
 g++                   the compiler, with C++20
 ccache                makes a second build fast
 python3               the layer check, the docs check and the test runner
+python3-venv          the Python wheel and its tests; pip brings the rest
+python3-dev           Python's headers, for the module
 libtbb-dev            oneTBB: parallel loops
 libhwy-dev            Highway: SIMD with a choice at run time
 libopenimageio-dev    pictures and textures

@@ -1,6 +1,7 @@
 #include "answers.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <limits>
 
@@ -42,6 +43,22 @@ std::string describe(const char* type, const Shape& shape, const float* t, const
 }
 
 }  // namespace
+
+Block allocate_block(std::size_t size) {
+  constexpr std::size_t kMinSpareBytes = std::size_t(1) << 20;  // below, memory is cheap
+  size = std::max<std::size_t>(size, 64);
+  if (size < kMinSpareBytes) return std::make_shared<simd::HugeBuffer>(size);
+
+  // The last result that was let go of leaves its block, for one that is nearly as large.
+  static std::atomic<simd::HugeBuffer*> spare{nullptr};
+  std::unique_ptr<simd::HugeBuffer> buffer(spare.exchange(nullptr));
+  if (!buffer || buffer->size() < size || buffer->size() / 2 > size)
+    buffer = std::make_unique<simd::HugeBuffer>(size);
+  return Block(buffer.release(), [](simd::HugeBuffer* old) {
+    if (old->size() <= kMaxSpareBytes) old = spare.exchange(old);
+    delete old;
+  });
+}
 
 HitColumns::HitColumns(std::size_t count, Block& block) {
   Layout layout;
@@ -292,7 +309,7 @@ void bind_answers(nb::module_& module) {
             }
             return make_array(block, origins, rows.shape(), 3);
           },
-          nb::arg("directions"),
+          nb::arg("directions").none(),
           sig("def spawn(self, directions: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float32]"),
           (std::string(doc::Surface_spawn) +
            "\n\nReturns the origins of these rays, of the shape of `directions`, which ends with that of the "

@@ -355,7 +355,7 @@ void bind_description(nb::module_& module) {
              const std::string& name) {
             return add_geometry(desc, read_mesh(vertices, triangles, normals, uvs), name);
           },
-          arg("vertices"), arg("triangles"), nb::kw_only(), arg("normals") = nb::none(),
+          arg("vertices").none(), arg("triangles").none(), nb::kw_only(), arg("normals") = nb::none(),
           arg("uvs") = nb::none(), arg("name") = "",
           sig("def add_mesh(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, *, "
               "normals: numpy.typing.ArrayLike | None = None, uvs: numpy.typing.ArrayLike | None = None, "
@@ -370,7 +370,7 @@ void bind_description(nb::module_& module) {
           [](SceneDesc& desc, nb::handle centers, nb::handle radii, const std::string& name) {
             return add_geometry(desc, read_spheres(centers, radii), name);
           },
-          arg("centers"), arg("radii"), nb::kw_only(), arg("name") = "",
+          arg("centers").none(), arg("radii").none(), nb::kw_only(), arg("name") = "",
           sig("def add_spheres(self, centers: numpy.typing.ArrayLike, radii: numpy.typing.ArrayLike, *, "
               "name: "
               "str = '') -> int"),
@@ -380,7 +380,7 @@ void bind_description(nb::module_& module) {
           [](SceneDesc& desc, nb::handle corners, const std::string& name) {
             return add_geometry(desc, read_quads(corners), name);
           },
-          arg("corners"), nb::kw_only(), arg("name") = "",
+          arg("corners").none(), nb::kw_only(), arg("name") = "",
           sig("def add_quads(self, corners: numpy.typing.ArrayLike, *, name: str = '') -> int"),
           "Quadrilaterals: corners (n, 4, 3), in order around each. Returns the geometry's id.")
       .def(
@@ -388,7 +388,7 @@ void bind_description(nb::module_& module) {
           [](SceneDesc& desc, nb::handle lower, nb::handle upper, const std::string& name) {
             return add_geometry(desc, read_cuboids(lower, upper), name);
           },
-          arg("lower"), arg("upper"), nb::kw_only(), arg("name") = "",
+          arg("lower").none(), arg("upper").none(), nb::kw_only(), arg("name") = "",
           sig("def add_cuboids(self, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, *, name: "
               "str = "
               "'') -> int"),
@@ -399,7 +399,7 @@ void bind_description(nb::module_& module) {
              const std::string& name) {
             return add_geometry(desc, read_disks(centers, normals, radii), name);
           },
-          arg("centers"), arg("normals"), arg("radii"), nb::kw_only(), arg("name") = "",
+          arg("centers").none(), arg("normals").none(), arg("radii").none(), nb::kw_only(), arg("name") = "",
           sig("def add_disks(self, centers: numpy.typing.ArrayLike, normals: numpy.typing.ArrayLike, radii: "
               "numpy.typing.ArrayLike, *, name: str = '') -> int"),
           "Disks: centers (n, 3), normals (n, 3) of any length, radii (n,). Returns the geometry's id.")

@@ -1,15 +1,16 @@
 // module.cpp: what is in the extension module boxwood._core?
-#include "answers.h"
 #include <nanobind/stl/string.h>
 
+#include "answers.h"
 #include "boxwood/core/error.h"
 #include "boxwood/simd/kernels.h"
 #include "describe.h"
-#include "scene_type.h"
+#include "queries.h"
 
 namespace boxwood::python {
 
 NB_MODULE(_core, module) {
+  nb::set_leak_warnings(false);  // what Python has not yet freed when it ends is no fault of ours
   module.attr("__version__") = BOXWOOD_VERSION;
   nb::exception<FileError>(module, "FileError", PyExc_OSError);
   module.def(
@@ -24,6 +25,7 @@ NB_MODULE(_core, module) {
   bind_description(module);
   bind_answers(module);
   bind_scene(module);
+  bind_yardstick(module);
 }
 
 }  // namespace boxwood::python

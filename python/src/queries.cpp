@@ -1,47 +1,36 @@
 // queries.cpp: how does a question in arrays become a stream of rays, and the answers columns?
+#include "queries.h"
+
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <mutex>
 
-#include "boxwood/scene/parts.h"
-
 #include "answers.h"
+#include "boxwood/scene/parts.h"
 #include "docstrings.h"
-#include "running.h"
-#include "scene_type.h"
 
 namespace boxwood::python {
+
+RayRows::RayRows(nb::handle origins, nb::handle directions, nb::handle t_min, nb::handle t_max)
+    : origins_("origins", origins, {3}),
+      directions_("directions", directions, {3}),
+      t_min_("t_min", t_min, {}),
+      t_max_("t_max", t_max, {}),
+      shape_(broadcast_shapes({&origins_, &directions_, &t_min_, &t_max_})) {
+  for (Rows* rows : {&origins_, &directions_, &t_min_, &t_max_}) rows->broadcast_to(shape_);
+}
+
+void RayRows::fill(std::size_t begin, std::span<Ray> rays) const {
+  // A Ray is eight floats (core/ray.h).
+  constexpr std::size_t kStride = sizeof(Ray) / sizeof(float);
+  origins_.read(begin, rays.size(), &rays[0].origin.x, kStride);
+  t_min_.read(begin, rays.size(), &rays[0].t_min, kStride);
+  directions_.read(begin, rays.size(), &rays[0].direction.x, kStride);
+  t_max_.read(begin, rays.size(), &rays[0].t_max, kStride);
+}
+
 namespace {
-
-/// The rays of four arguments that broadcast together.
-class RayRows {
- public:
-  RayRows(nb::handle origins, nb::handle directions, nb::handle t_min, nb::handle t_max)
-      : origins_("origins", origins, {3}),
-        directions_("directions", directions, {3}),
-        t_min_("t_min", t_min, {}),
-        t_max_("t_max", t_max, {}),
-        shape_(broadcast_shapes({&origins_, &directions_, &t_min_, &t_max_})) {
-    for (Rows* rows : {&origins_, &directions_, &t_min_, &t_max_}) rows->broadcast_to(shape_);
-  }
-
-  const Shape& shape() const { return shape_; }
-  std::size_t count() const { return count_of(shape_); }
-
-  /// Writes the rays from `begin` on: a Ray is eight floats (core/ray.h).
-  void fill(std::size_t begin, std::span<Ray> rays) const {
-    constexpr std::size_t kStride = sizeof(Ray) / sizeof(float);
-    origins_.read(begin, rays.size(), &rays[0].origin.x, kStride);
-    t_min_.read(begin, rays.size(), &rays[0].t_min, kStride);
-    directions_.read(begin, rays.size(), &rays[0].direction.x, kStride);
-    t_max_.read(begin, rays.size(), &rays[0].t_max, kStride);
-  }
-
- private:
-  Rows origins_, directions_, t_min_, t_max_;
-  Shape shape_;
-};
 
 Hits closest_hit(const SceneObject& s, nb::handle origins, nb::handle directions, nb::handle t_min,
                  nb::handle t_max, int threads) {
@@ -231,8 +220,8 @@ void bind_queries(nb::class_<SceneObject>& scene) {
   using nb::arg;
   const nb::object zero = nb::float_(0.0), infinity = nb::float_(std::numeric_limits<double>::infinity());
   const auto def_rays = [&](const char* name, auto function, const char* doc, const auto& signature) {
-    scene.def(name, function, arg("origins"), arg("directions"), nb::kw_only(), arg("t_min") = zero,
-              arg("t_max") = infinity, arg("threads") = 0, signature,
+    scene.def(name, function, arg("origins").none(), arg("directions").none(), nb::kw_only(),
+              arg("t_min").none() = zero, arg("t_max").none() = infinity, arg("threads") = 0, signature,
               (std::string(doc) + kRayArguments).c_str());
   };
   def_rays("closest_hit", &closest_hit, doc::Scene_closest_hit, BOXWOOD_RAY_SIGNATURE("closest_hit", "Hits"));
@@ -241,8 +230,8 @@ void bind_queries(nb::class_<SceneObject>& scene) {
   def_rays("all_hits", &all_hits, doc::Scene_all_hits, BOXWOOD_RAY_SIGNATURE("all_hits", "AllHits"));
   def_rays("count_hits", &count_hits, doc::Scene_count_hits,
            BOXWOOD_RAY_SIGNATURE("count_hits", "numpy.typing.NDArray[numpy.int64]"));
-  scene.def("closest_point", &closest_point, arg("points"), nb::kw_only(), arg("max_distance") = infinity,
-            arg("threads") = 0,
+  scene.def("closest_point", &closest_point, arg("points").none(), nb::kw_only(),
+            arg("max_distance").none() = infinity, arg("threads") = 0,
             nb::sig("def closest_point(self, points: numpy.typing.ArrayLike, *, max_distance: "
                     "numpy.typing.ArrayLike = float('inf'), threads: int = 0) -> Points"),
             (std::string(doc::Scene_closest_point) + "\n\npoints: an array of shape (..., 3); max_distance: "
@@ -250,7 +239,7 @@ void bind_queries(nb::class_<SceneObject>& scene) {
                                                      "means all.")
                 .c_str());
   scene.def(
-      "surface_at", &surface_at, arg("origins"), arg("directions"), arg("hits"), nb::kw_only(),
+      "surface_at", &surface_at, arg("origins").none(), arg("directions").none(), arg("hits"), nb::kw_only(),
       arg("threads") = 0,
       nb::sig("def surface_at(self, origins: numpy.typing.ArrayLike, directions: numpy.typing.ArrayLike, "
               "hits: Hits, *, threads: int = 0) -> Surfaces"),

@@ -12,8 +12,7 @@
 #include "boxwood/io/load.h"
 #include "boxwood/scene/parts.h"
 #include "docstrings.h"
-#include "rows.h"
-#include "running.h"
+#include "queries.h"
 
 namespace boxwood::python {
 namespace {
@@ -110,7 +109,7 @@ void bind_scene(nb::module_& module) {
             desc.add(read_mesh(vertices, triangles, normals, nb::none()));
             return build_scene(std::move(desc), or_default(options), threads);
           },
-          arg("vertices"), arg("triangles"), nb::kw_only(), arg("normals") = nb::none(),
+          arg("vertices").none(), arg("triangles").none(), nb::kw_only(), arg("normals") = nb::none(),
           arg("options") = nb::none(), arg("threads") = 0,
           sig("def from_mesh(vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, *, "
               "normals: "

@@ -17,7 +17,5 @@ SceneObject build_scene(SceneDesc desc, BuildOptions options, int threads);
 
 /// The class Scene: how it comes to be and what it tells of itself.
 void bind_scene(nb::module_& module);
-/// Its questions.
-void bind_queries(nb::class_<SceneObject>& scene);
 
 }  // namespace boxwood::python
