@@ -1,5 +1,5 @@
 #!/bin/sh
-# build_wheel.sh: one file to install, with every library in it but Python's own. Prints its path last.
+# build_wheel.sh: one file to install, with every library in it but Python's own. Prints its path.
 #
 #   tools/build_wheel.sh               a wheel for `python3`
 #   PYTHON=python3.12 tools/build_wheel.sh   for 3.12 or later: one wheel for all of these (the stable ABI)

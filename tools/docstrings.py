@@ -13,7 +13,7 @@ import re
 import sys
 
 SCOPE = re.compile(r"^(?:class|struct) (\w+)\b.*\{\s*$")
-IN_PYTHON = {"std::invalid_argument": "ValueError", "std::vector": "list", "+inf": "inf"}
+IN_PYTHON = {", Cancelled.": ".", "std::invalid_argument": "ValueError", "Throws": "Raises", "std::vector": "list", "+inf": "inf"}
 OPERATOR_OR_KEYWORD = {"operator", "if", "for", "return", "requires"}
 
 

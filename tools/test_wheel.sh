@@ -5,7 +5,7 @@
 # sources.
 set -eu
 cd "$(dirname "$0")/.."
-wheel=$(tools/build_wheel.sh | tail -n 1)
+wheel=$(tools/build_wheel.sh)
 venv=$PWD/build/python/venv
 
 "${PYTHON:-python3}" -m venv --clear "$venv"

@@ -36,10 +36,8 @@ class RayMeshIntersector:
         self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True, **kwargs: int
     ) -> tuple[_Array, _Indices, _Indices]:
         """Where rays hit: locations (h, 3), index_ray (h,), index_tri (h,)."""
-        index_tri, index_ray, locations = self.intersects_id(
-            ray_origins, ray_directions, multiple_hits=multiple_hits, return_locations=True, **kwargs
-        )
-        return locations, index_ray, index_tri
+        origins, directions, index_tri, index_ray, uv = self._find(ray_origins, ray_directions, multiple_hits, **kwargs)
+        return self._locations(origins[index_ray], directions[index_ray], index_tri, uv), index_ray, index_tri
 
     def intersects_id(
         self,
@@ -48,29 +46,12 @@ class RayMeshIntersector:
         multiple_hits: bool = True,
         max_hits: "int | None" = None,
         return_locations: bool = False,
-    ) -> "tuple[_Indices, ...]":
+    ) -> "tuple[_Indices, _Indices] | tuple[_Indices, _Indices, _Array]":
         """Which triangles rays hit: index_tri (h,), index_ray (h,), and locations (h, 3) when they are asked for.
 
         multiple_hits: every hit of a ray, or the first alone. max_hits: at most so many of each ray; None means all.
         """
-        origins, directions = self._rays(ray_origins, ray_directions)
-        scene, local = self._scene(origins)
-        if multiple_hits:
-            found = scene.all_hits(local, directions, threads=self.threads)
-            rows, moved = self._graze(scene, local, directions, np.diff(found.offsets) == 0)
-            if len(rows):
-                local[rows] = moved
-                found = scene.all_hits(local, directions, threads=self.threads)
-            counts = np.diff(found.offsets)
-            index_ray = np.repeat(np.arange(len(counts)), counts)
-            index_tri, uv = found.primitive_id.astype(np.int64), found.uv
-            if max_hits is not None and len(counts) and counts.max() > max_hits:
-                kept = np.arange(len(index_ray)) - found.offsets[index_ray] < max_hits
-                index_ray, index_tri, uv = index_ray[kept], index_tri[kept], uv[kept]
-        else:
-            first, first_uv = self._closest(scene, local, directions)
-            index_ray = np.flatnonzero(first >= 0)
-            index_tri, uv = first[index_ray], first_uv[index_ray]
+        origins, directions, index_tri, index_ray, uv = self._find(ray_origins, ray_directions, multiple_hits, max_hits)
         if not return_locations:
             return index_tri, index_ray
         return index_tri, index_ray, self._locations(origins[index_ray], directions[index_ray], index_tri, uv)
@@ -112,6 +93,30 @@ class RayMeshIntersector:
         counts = self._counts(scene, local[undecided], _PROBES)
         contained[undecided] = (np.sum(counts % 2 == 1, axis=0) > 3) & (counts > 0).all(axis=0)
         return contained
+
+    def _find(
+        self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool, max_hits: "int | None" = None
+    ) -> "tuple[_Array, _Array, _Indices, _Indices, npt.NDArray[np.float32]]":
+        """The rays as arrays; and of each hit its triangle, its ray, and where on the triangle it is."""
+        origins, directions = self._rays(ray_origins, ray_directions)
+        scene, local = self._scene(origins)
+        if multiple_hits:
+            found = scene.all_hits(local, directions, threads=self.threads)
+            rows, moved = self._graze(scene, local, directions, np.diff(found.offsets) == 0)
+            if len(rows):
+                local[rows] = moved
+                found = scene.all_hits(local, directions, threads=self.threads)
+            counts = np.diff(found.offsets)
+            index_ray = np.repeat(np.arange(len(counts)), counts)
+            index_tri, uv = found.primitive_id.astype(np.int64), found.uv
+            if max_hits is not None and len(counts) and counts.max() > max_hits:
+                kept = np.arange(len(index_ray)) - found.offsets[index_ray] < max_hits
+                index_ray, index_tri, uv = index_ray[kept], index_tri[kept], uv[kept]
+        else:
+            first, first_uv = self._closest(scene, local, directions)
+            index_ray = np.flatnonzero(first >= 0)
+            index_tri, uv = first[index_ray], first_uv[index_ray]
+        return origins, directions, index_tri, index_ray.astype(np.int64), uv
 
     def _closest(self, scene: Scene, local: _Array, directions: _Array) -> "tuple[_Indices, npt.NDArray[np.float32]]":
         """The first triangle of each ray, (m,), and where on it, (m, 2)."""

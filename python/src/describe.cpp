@@ -345,10 +345,14 @@ void bind_description(nb::module_& module) {
       "appears "
       "wherever an\ninstance places it; without any instance, each appears once, where it was defined.")
       .def(nb::init<>())
-      .def_rw("name", &SceneDesc::name)
+      .def_rw("name", &SceneDesc::name, "From the file, or what you like.")
       .def_ro("warnings", &SceneDesc::warnings, doc::SceneDesc_warnings)
-      .def_prop_ro("geometry_count", [](const SceneDesc& d) { return d.geometries.size(); })
-      .def_prop_ro("instance_count", [](const SceneDesc& d) { return d.instances.size(); })
+      .def_prop_ro(
+          "geometry_count", [](const SceneDesc& d) { return d.geometries.size(); },
+          "How many have been added.")
+      .def_prop_ro(
+          "instance_count", [](const SceneDesc& d) { return d.instances.size(); },
+          "How many have been added; with none, each geometry is shown where it was defined.")
       .def(
           "add_mesh",
           [](SceneDesc& desc, nb::handle vertices, nb::handle triangles, nb::handle normals, nb::handle uvs,

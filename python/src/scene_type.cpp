@@ -143,9 +143,12 @@ void bind_scene(nb::module_& module) {
           },
           sig("def bounds(self) -> numpy.typing.NDArray[numpy.float32]"),
           "(2, 3): the lower and the upper corner; of an empty scene inf and -inf.")
-      .def_prop_ro("geometry_count",
-                   [](const SceneObject& s) { return s.scene.description().geometries.size(); })
-      .def_prop_ro("instance_count", [](const SceneObject& s) { return s.scene.parts().instances.size(); })
+      .def_prop_ro(
+          "geometry_count", [](const SceneObject& s) { return s.scene.description().geometries.size(); },
+          "How many geometry_ids there are.")
+      .def_prop_ro(
+          "instance_count", [](const SceneObject& s) { return s.scene.parts().instances.size(); },
+          "How many instance_ids there are.")
       .def_prop_ro(
           "name", [](const SceneObject& s) { return s.scene.description().name; }, "From the file, or empty.")
       .def_prop_ro(
