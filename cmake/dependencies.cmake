@@ -1,13 +1,15 @@
 # dependencies.cmake: every library that the project uses, looked up once.
 #
-# Each look-up that fails says what is missing and how to get it.
+# What is missing is told all at once, with how to get it.
 list(PREPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
+set(BOXWOOD_MISSING "")
+set(BOXWOOD_MISSING_PACKAGES "")
 macro(boxwood_require name package)
   find_package(${name} QUIET ${ARGN})
   if(NOT ${name}_FOUND)
-    message(FATAL_ERROR "Boxwood needs ${name}, which was not found. On Debian: apt-get install ${package}. "
-      "For everything at once: tools/setup.sh")
+    list(APPEND BOXWOOD_MISSING ${name})
+    list(APPEND BOXWOOD_MISSING_PACKAGES ${package})
   endif()
 endmacro()
 
@@ -36,4 +38,11 @@ if(BOXWOOD_BUILD_TESTS)
   boxwood_require(GTest libgtest-dev)
   find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter)  # the checks of layers, snippets and outputs
   find_package(benchmark QUIET)    # only for make microbench
+endif()
+
+if(BOXWOOD_MISSING)
+  list(JOIN BOXWOOD_MISSING ", " names)
+  list(JOIN BOXWOOD_MISSING_PACKAGES " " packages)
+  message(FATAL_ERROR "Boxwood needs ${names}, not found here. On Debian: apt-get install ${packages}\n"
+    "(tools/setup.sh installs whatever any part of Boxwood needs.)")
 endif()

@@ -37,10 +37,12 @@ def measure(question, engines, vertices, count, threads, rounds, patience, rates
     for engine in engines:
         if not hasattr(engine, ask):
             continue
-        # A peer that would take minutes is not asked.
+        # Nobody waits for minutes.
         rate = rates.get((engine.name, question))
         if rate and count / rate > patience:
             results[engine.name] = "slow"
+            if not running:
+                return results
             continue
         rays = engine.prepare(question, origins, directions)
         start = time.perf_counter()
@@ -78,8 +80,8 @@ def cell(result, is_ours):
     if isinstance(result, str):
         return result
     rate, ratio = result
-    text = f"{rate / 1e6:.2f}" if rate < 1e7 else f"{rate / 1e6:.1f}"
-    return text if is_ours else f"{text} ({ratio:.1f}x)" if ratio >= 1.095 else f"{text} ({ratio:.2f}x)"
+    text = f"{rate / 1e6:.3g}"
+    return text if is_ours else f"{text} ({ratio:.2g}x)"
 
 
 def table(rows, names):
@@ -134,7 +136,7 @@ def main(arguments=None):
     parser.add_argument("--questions", nargs="+", choices=peers.QUESTIONS, default=peers.QUESTIONS, metavar="QUESTION",
                         help='of "closest hit", "any hit", "all hits", "closest point"')
     parser.add_argument("--rounds", type=int, default=5, metavar="N", help="medians of so many [5]")
-    parser.add_argument("--patience", type=float, default=20, metavar="SECONDS", help="skip a peer's call that takes longer [20]")
+    parser.add_argument("--patience", type=float, default=20, metavar="SECONDS", help="skip calls that take longer [20]")
     parser.add_argument("--json", metavar="FILE", help="write the figures")
     parser.add_argument("--plot", metavar="FILE", help="draw them (.svg, .png); needs matplotlib")
     options = parser.parse_args(arguments)
