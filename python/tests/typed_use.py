@@ -1,7 +1,7 @@
 """A program with types, for test_types.py: both checkers must accept it, and see the types that it claims."""
 
 import pathlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     assert_type(scene.closest_point([0, 0, 0], max_distance=np.ones(4)).position, npt.NDArray[np.float32])
     assert_type(scene.surface_at([0, 0, 0], [0, 0, 1], hits).spawn([0, 0, 1]), npt.NDArray[np.float32])
     assert_type(scene.stats()["nodes"], float)
-    assert_type(scene.camera, bw.Camera | None)
+    assert_type(scene.camera, Optional[bw.Camera])
     assert_type(scene.mesh(0), tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]])
     desc = bw.SceneDesc()
     assert_type(desc.add_mesh(np.zeros((3, 3)), [[0, 1, 2]], name="leaf"), int)
