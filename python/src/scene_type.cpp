@@ -19,18 +19,20 @@ namespace {
 
 constexpr std::size_t kLongBuild = 20'000;  // primitives: some ten milliseconds
 
-/// Materials say how things look, which no query asks.
-void drop_materials(SceneDesc& desc) {
+/// What queries need; materials and lights say how things look, which none asks.
+SceneDesc without_looks(SceneDesc desc) {
   for (Geometry& geometry : desc.geometries) {
     geometry.material = {};
     geometry.materials = {};
   }
   for (Instance& instance : desc.instances) instance.material = {};
-  desc.materials = {};
-  desc.textures = {};
-  desc.point_lights = {};
-  desc.distant_lights = {};
-  desc.sky.reset();
+  SceneDesc kept;
+  kept.geometries = std::move(desc.geometries);
+  kept.instances = std::move(desc.instances);
+  kept.camera = desc.camera;
+  kept.name = std::move(desc.name);
+  kept.warnings = std::move(desc.warnings);
+  return kept;
 }
 
 SceneDesc read_desc(const std::filesystem::path& path, int threads) {
@@ -49,8 +51,7 @@ SceneDesc read_desc(const std::filesystem::path& path, int threads) {
     Executor& executor = executor_of(threads);
     run_interruptibly(true, [&](const Progress&) { desc = io::load(path, &executor); });
   }
-  drop_materials(desc);
-  return desc;
+  return without_looks(std::move(desc));
 }
 
 BuildOptions or_default(const std::optional<BuildOptions>& options) {

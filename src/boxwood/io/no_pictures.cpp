@@ -2,6 +2,7 @@
 //
 // Scenes load without their textures, with a warning for each; geometry is all there.
 #include "boxwood/io/image.h"
+#include "boxwood/io/picture_cache.h"
 
 namespace boxwood::io {
 namespace {
@@ -12,7 +13,13 @@ namespace {
 
 }  // namespace
 
-void write_image(const std::filesystem::path& path, const Image&) {
+void write_image(const std::filesystem::path& path, const Image&, const ExrOptions&) {
+  refuse(path.string());
+}
+ExrFile read_exr(const std::filesystem::path& path) {
+  refuse(path.string());
+}
+Texture open_texture(const std::filesystem::path& path) {
   refuse(path.string());
 }
 Image read_image(const std::filesystem::path& path) {
