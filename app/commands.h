@@ -9,6 +9,7 @@ namespace boxwood::app {
 /// and exit code 1.
 void add_render(CLI::App& program);
 void add_merge(CLI::App& program);
+void add_diff(CLI::App& program);
 void add_info(CLI::App& program);
 void add_ladder(CLI::App& program);
 void add_bench(CLI::App& program);

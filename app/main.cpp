@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
       "  boxwood render -o picture.png           a picture of the program's own scene\n"
       "  boxwood render bunny.obj -o bunny.png   a picture of a file\n"
       "  boxwood merge part*.exr -o all.exr      one picture from the shards of a farm\n"
+      "  boxwood diff a.exr b.exr                how far two pictures are apart\n"
       "  boxwood info bunny.obj                  what is in it, what its tree is like\n"
       "  boxwood ladder                          from brute force to the best tree\n"
       "  boxwood bench bunny.obj                 how fast it is, beside Embree\n"
@@ -71,6 +72,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 failed, 2 wrong usage.");
   boxwood::app::add_render(program);
   boxwood::app::add_merge(program);
+  boxwood::app::add_diff(program);
   boxwood::app::add_info(program);
   boxwood::app::add_ladder(program);
   boxwood::app::add_bench(program);

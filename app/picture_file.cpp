@@ -10,17 +10,21 @@
 
 namespace boxwood::app {
 
-void add_look_options(CLI::App& command, PictureLook& look) {
+void add_exposure_options(CLI::App& command, PictureLook& look) {
   command
       .add_option("--exposure", look.exposure_stops,
-                  "Stops by which a .png is lighter (1 doubles light)\nor darker (-1 halves it)")
+                  "Stops by which 8-bit pictures are lighter (1 doubles\nlight) or darker (-1 halves it)")
       ->capture_default_str()
       ->check(CLI::Range(-100.0, 100.0).description(""));
   command
       .add_option("--tone", look.tone,
-                  "How a .png shows what is too bright for it: linear\n(white), reinhard, filmic")
+                  "How they show what is too bright for them: linear\n(white), reinhard, filmic")
       ->capture_default_str()
       ->check(CLI::IsMember({"linear", "reinhard", "filmic"}).description(""));
+}
+
+void add_look_options(CLI::App& command, PictureLook& look) {
+  add_exposure_options(command, look);
   command.add_flag("--half", look.is_half, "Light and colors of an .exr in 16 bits, not 32");
 }
 

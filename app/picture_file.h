@@ -17,7 +17,8 @@ struct PictureLook {
   bool is_half = false;
 };
 
-/// Adds --exposure, --tone and --half to `command`.
+/// Adds --exposure and --tone to `command`; or these and --half.
+void add_exposure_options(CLI::App& command, PictureLook& look);
 void add_look_options(CLI::App& command, PictureLook& look);
 
 /// A check of CLI11: the name must end in .png, .exr or .hdr.

@@ -195,7 +195,7 @@ TEST_F(Program, ManyWarningsDoNotFloodTheTerminal) {
 }
 
 TEST_F(Program, HelpFitsATerminal) {
-  for (const std::string command : {"", "render ", "merge ", "info ", "ladder "}) {
+  for (const std::string command : {"", "render ", "merge ", "diff ", "info ", "ladder "}) {
     std::istringstream help(run(command + "--help").out);
     for (std::string line; std::getline(help, line);) EXPECT_LE(line.size(), 80u) << command << ": " << line;
   }

@@ -16,17 +16,6 @@ constexpr int kStops[][3] = {{0, 0, 4},     {33, 12, 74},  {87, 16, 110},  {138,
                              {228, 90, 49}, {249, 142, 9}, {249, 203, 53}, {252, 255, 164}};
 constexpr int kLastStop = static_cast<int>(std::size(kStops)) - 1;
 
-Vec3 false_color(float share) {
-  const float x = min(max(share, 0.0f), 1.0f) * kLastStop;
-  const int stop = std::min(static_cast<int>(x), kLastStop - 1);
-  Vec3 color;
-  for (int c = 0; c < 3; ++c) {
-    const float a = static_cast<float>(kStops[stop][c]), b = static_cast<float>(kStops[stop + 1][c]);
-    color[c] = linear_from_srgb((a + (b - a) * (x - static_cast<float>(stop))) / 255);
-  }
-  return color;
-}
-
 /// The smallest of 1, 2, 4, 8 times a power of ten that is at least `value` and has whole quarters.
 int round_up_nicely(float value) {
   for (int decade = 1;; decade *= 10)
@@ -74,6 +63,17 @@ void draw_legend(Image& picture, int top_of_scale, double mean) {
 }
 
 }  // namespace
+
+Vec3 false_color(float share) {
+  const float x = min(max(share, 0.0f), 1.0f) * kLastStop;
+  const int stop = std::min(static_cast<int>(x), kLastStop - 1);
+  Vec3 color;
+  for (int c = 0; c < 3; ++c) {
+    const float a = static_cast<float>(kStops[stop][c]), b = static_cast<float>(kStops[stop + 1][c]);
+    color[c] = linear_from_srgb((a + (b - a) * (x - static_cast<float>(stop))) / 255);
+  }
+  return color;
+}
 
 Image cost_as_color(const Image& cost) {
   std::vector<float> tests(std::size_t(cost.width) * cost.height);
