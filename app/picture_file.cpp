@@ -13,7 +13,7 @@ namespace boxwood::app {
 void add_exposure_options(CLI::App& command, PictureLook& look) {
   command
       .add_option("--exposure", look.exposure_stops,
-                  "Stops by which 8-bit pictures are lighter (1 doubles\nlight) or darker (-1 halves it)")
+                  "Stops by which 8-bit pictures are lighter (1\ndoubles light) or darker (-1 halves it)")
       ->capture_default_str()
       ->check(CLI::Range(-100.0, 100.0).description(""));
   command

@@ -1,6 +1,8 @@
 // What a render keeps: checkpoints, kills at any moment, disks that are full, previews, budgets.
 #include <fstream>
 
+#include <sys/resource.h>
+
 #include "boxwood/io/image.h"
 #include "program.h"
 
@@ -161,6 +163,26 @@ TEST_F(Keeping, ATimeBudgetEndsWithAWholePicture) {
   const Image image = io::read_image(path("a.exr"));
   for (int i = 0; i < 50 * 50; ++i) ASSERT_GE(image.pixels[i * 4 + 3], 1);
   EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(Keeping, MemoryDoesNotGrowWithSamples) {
+  // The most that the program ever held, in KB, as the kernel tells of each child that it waits for.
+  const auto most_kb = [&](const char* samples) {
+    const std::string picture = path(std::string(samples) + ".exr");
+    const pid_t child = fork();
+    if (child == 0) {
+      execl(BOXWOOD_PROGRAM, "boxwood", "render", "cornell", "--size", "40x40", "--samples", samples,
+            "--threads", "1", "--quiet", "-o", picture.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    int status = -1;
+    rusage usage{};
+    EXPECT_EQ(wait4(child, &status, 0, &usage), child);
+    EXPECT_EQ(status, 0);
+    return usage.ru_maxrss;
+  };
+  const long few = most_kb("32");
+  EXPECT_LT(most_kb("1024"), few + 2048) << few;  // 19 MB if each sample were kept
 }
 
 TEST_F(Keeping, SeveralOutputsOfOneRender) {

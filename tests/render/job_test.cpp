@@ -217,6 +217,29 @@ TEST(Job, LayersTellWhatIsSeen) {
   EXPECT_EQ(value(0, 0, "variance.Y"), 0);
 }
 
+TEST(Job, LayersSeeThroughCutOuts) {
+  // A veil of which hardly anything is there, before a wall.
+  SceneDesc desc;
+  Material veil = material_of_kind(Material::Kind::matte, {1, 0, 0}),
+           wall = material_of_kind(Material::Kind::matte, {0, 1, 0});
+  veil.opacity = 0.1f;
+  const auto square = [](float z) {
+    return std::vector<Quad>{{{-9, -9, z}, {9, -9, z}, {9, 9, z}, {-9, 9, z}}};
+  };
+  desc.add(square(-2), desc.add(veil));
+  desc.add(square(-5), desc.add(wall));
+  desc.camera.emplace();
+  RenderOptions options;
+  options.width = options.height = 5;
+  options.samples = 1;
+  options.layers = {Layer::albedo, Layer::depth, Layer::object};
+  const Image image = render_picture(Scene(desc), options).image;
+  const float* middle = image.at(2, 2);
+  EXPECT_EQ((std::vector<float>{middle[3], middle[4]}), (std::vector<float>{0, 1}));
+  EXPECT_NEAR(middle[6], 5, 1e-4f);
+  EXPECT_EQ(middle[7], 2);
+}
+
 TEST(Job, SamplesThatAreNotFiniteAreLeftOutAndCounted) {
   // Two lamps of the largest light that a float holds: the sum of them, in a mirror or not, may be too much.
   SceneDesc desc;

@@ -1,6 +1,7 @@
 #include "boxwood/render/layer.h"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 
 #include "boxwood/render/material.h"
@@ -30,6 +31,32 @@ constexpr Layer kLayers[] = {Layer::albedo, Layer::normal,   Layer::depth,   Lay
 
 const LayerFacts& facts_of(Layer layer) {
   return kFacts[static_cast<std::size_t>(layer)];
+}
+
+/// What a camera ray gets to see.
+struct Seen {
+  Surface surface;
+  InstanceId instance;
+  float distance;  // from the ray's start; directions are of unit length
+};
+
+/// The first surface that meets at least half of the light; cut-outs and veils are seen through. `hit` is the
+/// ray's first.
+std::optional<Seen> first_seen(const Scene& scene, Ray ray, Hit hit) {
+  constexpr int kMaxVeils = 64;
+  const SceneDesc& desc = scene.description();
+  float before = 0;
+  for (int veil = 0; hit && veil < kMaxVeils; ++veil) {
+    const Surface surface = surface_at(scene, ray, hit);
+    const Material& material = material_of(desc, surface.material);
+    const bool is_seen = !is_see_through(material) || (material.kind != Material::Kind::clear &&
+                                                       opacity_at(desc, material, surface.uv) >= 0.5f);
+    if (is_seen) return Seen{surface, hit.instance_id, before + hit.t};
+    before += hit.t;
+    ray = surface.spawn(ray.direction);
+    hit = scene.closest_hit(ray);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -79,31 +106,30 @@ void Features::look(std::span<const Ray> rays, std::span<float> values, std::spa
   scene_.closest_hit(rays, hits, &serial_executor());
   const SceneDesc& desc = scene_.description();
   float* out = values.data();
+  const auto put = [&out](Vec3 v) {
+    for (int c = 0; c < 3; ++c) *out++ = v[c];
+  };
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    is_hit[i] = hits[i].is_hit();
-    const Surface surface = is_hit[i] ? surface_at(scene_, rays[i], hits[i]) : Surface{};
-    const auto put = [&out](Vec3 v) {
-      for (int c = 0; c < 3; ++c) *out++ = v[c];
-    };
+    const std::optional<Seen> seen = first_seen(scene_, rays[i], hits[i]);
+    is_hit[i] = seen.has_value();
     for (const Layer layer : layers_) {
       if (layer == Layer::depth)
-        *out++ = is_hit[i] ? hits[i].t : 0;  // in units of a unit direction, so this is a distance
-      else if (!is_hit[i])
+        *out++ = seen ? seen->distance : 0;
+      else if (!seen)
         put({0, 0, 0});
       else if (layer == Layer::albedo)
-        put(base_color(desc, material_of(desc, surface.material), surface.uv));
+        put(base_color(desc, material_of(desc, seen->surface.material), seen->surface.uv));
       else
-        put(layer == Layer::normal ? surface.shading_normal : surface.position);
+        put(layer == Layer::normal ? seen->surface.shading_normal : seen->surface.position);
     }
   }
 }
 
 float name_of_hit(const Scene& scene, const Ray& ray, Layer layer) {
-  const Hit hit = scene.closest_hit(ray);
-  if (!hit) return 0;
-  if (layer == Layer::object) return static_cast<float>(hit.instance_id.value + 1);
-  const MaterialId material = surface_at(scene, ray, hit).material;
-  return material.is_valid() ? static_cast<float>(material.value + 1) : 0;
+  const std::optional<Seen> seen = first_seen(scene, ray, scene.closest_hit(ray));
+  if (!seen) return 0;
+  if (layer == Layer::object) return static_cast<float>(seen->instance.value + 1);
+  return seen->surface.material.is_valid() ? static_cast<float>(seen->surface.material.value + 1) : 0;
 }
 
 }  // namespace boxwood::render
