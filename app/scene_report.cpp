@@ -79,11 +79,13 @@ TreeReport report_triangles(std::string name, const simd::TriangleTree& tree) {
   // Keys count the part's triangles from 0.
   const WideBvh<W> wide = tree.unpack<W>();
   std::vector<Box3> boxes;
-  for (const simd::TriangleBlock& block : tree.blocks())
+  for (std::size_t i = 0; i < tree.block_count(); ++i) {
+    const simd::TriangleBlock block = tree.block(i);
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       if (block.key[lane] >= boxes.size()) boxes.resize(block.key[lane] + std::size_t(1));
       boxes[block.key[lane]] = block.triangle(lane).box();
     }
+  }
   TreeReport out = report_tree(std::move(name), wide, boxes);
 
   // The slots have become blocks of triangles, which count as geometry.

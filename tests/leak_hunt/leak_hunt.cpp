@@ -128,7 +128,7 @@ Count hunt(const simd::Kernels& kernels, const test::Body& body, Vec3 offset, st
       const PreparedRay prepared(batch[i], bounds);
       int sum = 0;
       for (const simd::TriangleHit& hit : all)
-        sum += test::crossing_sign(prepared, tree.block_at(hit.block).triangle(hit.lane));
+        sum += test::crossing_sign(prepared, tree.triangle(hit.block, hit.lane));
       ++count.counted;
       count.miscounted +=
           sum != int(aimed[i].starts_inside) || all.size() % 2 != std::size_t(aimed[i].starts_inside);

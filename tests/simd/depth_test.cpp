@@ -96,7 +96,7 @@ void expect_room(bool path_is_first) {
   LeafCounter counter{prepared};
   NoStatistics none;
   traverse_wide<W>(
-      [&](ChildRef node) -> const auto& { return tree.node_at<W>(node); }, counter, none);
+      [&](ChildRef node) -> const auto& { return tree.full_node<W>(node); }, counter, none);
   EXPECT_EQ(counter.blocks, tree.block_count());
 
   // So does every kernel.

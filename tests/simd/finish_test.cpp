@@ -35,38 +35,39 @@ std::vector<Ray> rays_at(const std::vector<Triangle>& triangles, std::size_t cou
 void expect_finished_right(const std::string& name, const std::vector<Triangle>& triangles, float scale) {
   SCOPED_TRACE(name);
   const Bvh bvh = build(boxes(triangles));
-  for (const Kernels* kernels : available_kernels()) {
-    const auto tree = test::pack(kernels->width, bvh, triangles);
-    for (const std::size_t count : {0, 1, 7, 63, 64, 65, 128, 5000}) {
-      const std::vector<Ray> rays = rays_at(triangles, count, scale);
-      std::vector<TriangleHit> found(count);
-      std::vector<std::uint32_t> unusual;
-      kernels->closest_hits(*tree, rays, bvh.bounds(), found.data(), unusual);
-      ASSERT_TRUE(unusual.empty());
-      std::vector<Hit> hits(count);
-      kernels->finish_hits(*tree, rays, found.data(), hits.data());
+  for (const Kernels* kernels : available_kernels())
+    for (const Layout layout : test::kLayouts) {
+      const auto tree = test::pack(kernels->width, bvh, triangles, {}, layout);
+      for (const std::size_t count : {0, 1, 7, 63, 64, 65, 128, 5000}) {
+        const std::vector<Ray> rays = rays_at(triangles, count, scale);
+        std::vector<TriangleHit> found(count);
+        std::vector<std::uint32_t> unusual;
+        kernels->closest_hits(*tree, rays, bvh.bounds(), found.data(), unusual);
+        ASSERT_TRUE(unusual.empty());
+        std::vector<Hit> hits(count);
+        kernels->finish_hits(*tree, rays, found.data(), hits.data());
 
-      std::size_t hit_count = 0, wrong = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (!found[i].is_hit()) {
-          wrong += !(hits[i] == Hit{});
-          continue;
+        std::size_t hit_count = 0, wrong = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+          if (!found[i].is_hit()) {
+            wrong += !(hits[i] == Hit{});
+            continue;
+          }
+          ++hit_count;
+          const Triangle& triangle = triangles[found[i].key];
+          const RayShear shear(rays[i].origin, rays[i].direction);
+          Crossing crossing;
+          ASSERT_TRUE(intersect_triangle(shear, triangle.a, triangle.b, triangle.c, crossing));
+          const Vec3 normal = triangle.normal();
+          bool is_right = test::same_bits(hits[i].t, found[i].t) && test::same_bits(hits[i].u, crossing.u) &&
+                          test::same_bits(hits[i].v, crossing.v);
+          for (int k = 0; k < 3; ++k) is_right &= test::same_bits(hits[i].normal[k], normal[k]);
+          wrong += !is_right;
         }
-        ++hit_count;
-        const Triangle& triangle = triangles[found[i].key];
-        const RayShear shear(rays[i].origin, rays[i].direction);
-        Crossing crossing;
-        ASSERT_TRUE(intersect_triangle(shear, triangle.a, triangle.b, triangle.c, crossing));
-        const Vec3 normal = triangle.normal();
-        bool is_right = test::same_bits(hits[i].t, found[i].t) && test::same_bits(hits[i].u, crossing.u) &&
-                        test::same_bits(hits[i].v, crossing.v);
-        for (int k = 0; k < 3; ++k) is_right &= test::same_bits(hits[i].normal[k], normal[k]);
-        wrong += !is_right;
+        EXPECT_EQ(wrong, 0u) << kernels->name << ", " << count << " rays";
+        EXPECT_GE(hit_count, count / 4) << "the rays are too easy";
       }
-      EXPECT_EQ(wrong, 0u) << kernels->name << ", " << count << " rays";
-      EXPECT_GE(hit_count, count / 4) << "the rays are too easy";
     }
-  }
 }
 
 TEST(KernelFinish, WeightsAndNormalsHaveTheBitsOfTheScalarOnes) {

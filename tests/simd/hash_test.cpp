@@ -71,28 +71,30 @@ std::uint64_t hash_of(const std::vector<TriangleHit>& hits) {
 TEST(KernelHash, TheSameOnEveryTargetInBatchesAndOnAnyNumberOfThreads) {
   const World& w = world();
   const Box3 bounds = w.bvh.bounds();
-  for (const Kernels* kernels : available_kernels()) {
-    const auto tree = test::pack(kernels->width, w.bvh, w.triangles);
-    std::vector<TriangleHit> hits(kRays);
-    for (std::size_t i = 0; i < kRays; ++i)
-      ASSERT_TRUE(kernels->closest_hit(*tree, w.rays[i], bounds, hits[i])) << kernels->name;
-    std::size_t hit_count = 0;
-    for (const TriangleHit& hit : hits) hit_count += hit.is_hit();
-    EXPECT_EQ(hit_count, kRays) << kernels->name;
-    EXPECT_EQ(hash_of(hits), kHash) << kernels->name << ", single rays";
+  for (const Kernels* kernels : available_kernels())
+    for (const Layout layout : test::kLayouts) {
+      SCOPED_TRACE(layout == Layout::full ? "full" : "compact");
+      const auto tree = test::pack(kernels->width, w.bvh, w.triangles, {}, layout);
+      std::vector<TriangleHit> hits(kRays);
+      for (std::size_t i = 0; i < kRays; ++i)
+        ASSERT_TRUE(kernels->closest_hit(*tree, w.rays[i], bounds, hits[i])) << kernels->name;
+      std::size_t hit_count = 0;
+      for (const TriangleHit& hit : hits) hit_count += hit.is_hit();
+      EXPECT_EQ(hit_count, kRays) << kernels->name;
+      EXPECT_EQ(hash_of(hits), kHash) << kernels->name << ", single rays";
 
-    for (const int threads : {1, 2, 4}) {
-      const auto executor = make_executor(threads);
-      hits.assign(kRays, {});
-      parallel_for(*executor, 0, kRays / kPart, 1, [&](std::size_t part) {
-        std::vector<std::uint32_t> unusual;
-        kernels->closest_hits(*tree, std::span(w.rays).subspan(part * kPart, kPart), bounds,
-                              hits.data() + part * kPart, unusual);
-        if (!unusual.empty()) hits[part * kPart] = {};
-      });
-      EXPECT_EQ(hash_of(hits), kHash) << kernels->name << ", batches on " << threads << " threads";
+      for (const int threads : {1, 2, 4}) {
+        const auto executor = make_executor(threads);
+        hits.assign(kRays, {});
+        parallel_for(*executor, 0, kRays / kPart, 1, [&](std::size_t part) {
+          std::vector<std::uint32_t> unusual;
+          kernels->closest_hits(*tree, std::span(w.rays).subspan(part * kPart, kPart), bounds,
+                                hits.data() + part * kPart, unusual);
+          if (!unusual.empty()) hits[part * kPart] = {};
+        });
+        EXPECT_EQ(hash_of(hits), kHash) << kernels->name << ", batches on " << threads << " threads";
+      }
     }
-  }
 }
 
 // A share of the same hits by brute force, so that the number is not just what some kernel said once.

@@ -16,9 +16,10 @@ namespace {
 
 template <int W>
 std::unique_ptr<TriangleTree> pack_as(const Bvh& bvh, std::span<const Triangle> triangles,
-                                      std::span<const std::uint32_t> keys, WideCost cost) {
+                                      std::span<const std::uint32_t> keys, Layout layout,
+                                      WideCost cost = {}) {
   return std::make_unique<TriangleTree>(collapse<W>(bvh, serial_executor(), cost), triangles, keys,
-                                        serial_executor());
+                                        serial_executor(), layout);
 }
 
 struct PackedTree {
@@ -26,7 +27,8 @@ struct PackedTree {
   std::unique_ptr<TriangleTree> tree;
 };
 
-/// The trees of every method, of the presets, and wide trees with small leaves and with large ones.
+/// The trees of every method, of the presets, and wide trees with small leaves and with large ones; in every
+/// layout.
 std::vector<PackedTree> every_packed_tree(int width, std::span<const Triangle> triangles,
                                           std::span<const std::uint32_t> keys) {
   const std::vector<Box3> all = boxes(triangles);
@@ -38,9 +40,12 @@ std::vector<PackedTree> every_packed_tree(int width, std::span<const Triangle> t
 
   std::vector<PackedTree> packed;
   const auto add = [&](const std::string& name, const Bvh& bvh, WideCost cost) {
-    packed.push_back(
-        {name, width == 4 ? pack_as<4>(bvh, triangles, keys, cost) : pack_as<8>(bvh, triangles, keys, cost)});
-    EXPECT_EQ(validate(*packed.back().tree), "") << name;
+    for (const Layout layout : kLayouts) {
+      packed.push_back({name + (layout == Layout::full ? "" : ", compact"),
+                        width == 4 ? pack_as<4>(bvh, triangles, keys, layout, cost)
+                                   : pack_as<8>(bvh, triangles, keys, layout, cost)});
+      EXPECT_EQ(validate(*packed.back().tree), "") << packed.back().name;
+    }
   };
   for (const auto& [name, bvh] : trees) add(name, bvh, {});
   const Bvh fine = build(all, {.leaf_size = 1});
@@ -53,7 +58,7 @@ bool equals(const TriangleHit& hit, const Answer& expected, const TriangleTree& 
   if (expected.crossings.empty()) return !hit.is_hit() && hit.t == kInfinity && hit.key == TriangleHit::kNone;
   const auto [t, key] = expected.crossings.front();
   return hit.is_hit() && same_bits(hit.t, t) && hit.key == key && hit.lane < kBlockWidth &&
-         tree.block_at(hit.block).key[hit.lane] == key;
+         tree.key(hit.block, hit.lane) == key;
 }
 
 bool same_hit(const TriangleHit& a, const TriangleHit& b) {
@@ -89,8 +94,8 @@ bool same_bits(float a, float b) {
 }
 
 std::unique_ptr<TriangleTree> pack(int width, const Bvh& bvh, std::span<const Triangle> triangles,
-                                   std::span<const std::uint32_t> keys) {
-  return width == 4 ? pack_as<4>(bvh, triangles, keys, {}) : pack_as<8>(bvh, triangles, keys, {});
+                                   std::span<const std::uint32_t> keys, Layout layout) {
+  return width == 4 ? pack_as<4>(bvh, triangles, keys, layout) : pack_as<8>(bvh, triangles, keys, layout);
 }
 
 std::vector<Answer> brute_answers(std::span<const Triangle> triangles, std::span<const std::uint32_t> keys,
@@ -147,7 +152,7 @@ std::vector<bool> expect_batch_equals_single(const Kernels& kernels, const Trian
       complain(rays[i], i, "any_hit differs from closest_hit");
     if (!same_bits(hits[i].t, hit.t) || hits[i].is_hit() != hit.is_hit() || hits[i].key != hit.key)
       complain(rays[i], i, "closest_hits differs from closest_hit");
-    if (hits[i].is_hit() && tree.block_at(hits[i].block).key[hits[i].lane] != hits[i].key)
+    if (hits[i].is_hit() && tree.key(hits[i].block, hits[i].lane) != hits[i].key)
       complain(rays[i], i, "closest_hits names another triangle's place");
     if (any[i] != hit.is_hit() || any[rays.size() + i] != hit.is_hit())
       complain(rays[i], i, "any_hits differs from any_hit");
@@ -187,7 +192,7 @@ Checked expect_equal_to(const Kernels& kernels, const TriangleTree& tree, std::s
     crossings.clear();
     for (std::size_t k = 1; k < found.size(); ++k) {
       if (std::signbit(found[k].t)) complain(rays[i], i, "all_hits gives a negative zero");
-      if (tree.block_at(found[k].block).key[found[k].lane] != found[k].key)
+      if (tree.key(found[k].block, found[k].lane) != found[k].key)
         complain(rays[i], i, "all_hits names another triangle's place");
       crossings.push_back({found[k].t, found[k].key});
     }

@@ -16,9 +16,11 @@
 
 namespace boxwood::simd::test {
 
-/// The tree of `width` children a node.
+inline constexpr Layout kLayouts[] = {Layout::full, Layout::compact};
+
+/// The tree of `width` children a node. One in the compact layout needs the triangles as long as it lives.
 std::unique_ptr<TriangleTree> pack(int width, const Bvh& bvh, std::span<const Triangle> triangles,
-                                   std::span<const std::uint32_t> keys = {});
+                                   std::span<const std::uint32_t> keys = {}, Layout layout = Layout::full);
 
 /// What brute force says of one ray: t and key of each crossing, in the order of the contract, each once.
 struct Answer {

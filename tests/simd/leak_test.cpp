@@ -37,10 +37,13 @@ void shoot(const Kernels& kernels, const boxwood::test::Mesh& mesh, Vec3 inside,
   const std::vector<Triangle> triangles = boxwood::test::triangles(mesh);
   const Bvh bvh = build(boxes(triangles));
   const Box3 bounds = bvh.bounds();
-  const auto tree = test::pack(kernels.width, bvh, triangles);
+  const std::unique_ptr<TriangleTree> trees[] = {
+      test::pack(kernels.width, bvh, triangles, {}, Layout::full),
+      test::pack(kernels.width, bvh, triangles, {}, Layout::compact)};
 
   constexpr std::size_t kBlock = 1000;
   parallel_for(default_executor(), 0, (count + kBlock - 1) / kBlock, 1, [&](std::size_t block) {
+    const auto& tree = trees[block % 2];
     Random random(2, block);
     std::vector<AimedRay> aimed;
     std::vector<Ray> rays;
@@ -71,7 +74,7 @@ void shoot(const Kernels& kernels, const boxwood::test::Mesh& mesh, Vec3 inside,
       int sum = 0;
       bool has_first = !single.is_hit();
       for (const TriangleHit& hit : all) {
-        sum += boxwood::test::crossing_sign(prepared, tree->block_at(hit.block).triangle(hit.lane));
+        sum += boxwood::test::crossing_sign(prepared, tree->triangle(hit.block, hit.lane));
         has_first |= hit.key == single.key && test::same_bits(hit.t, single.t);
         disagreements += hit.t < single.t;
       }

@@ -50,45 +50,47 @@ void expect_placed_right(const std::string& name, const std::vector<Triangle>& t
   boxwood::test::add_limited_rays(rays, reference::BruteForce(triangles), random);
 
   std::size_t asked = 0, hit_count = 0, at_ends = 0, behind = 0;
-  for (const Kernels* kernels : available_kernels()) {
-    const auto tree = test::pack(kernels->width, bvh, triangles);
-    std::size_t wrong = 0;
-    for (const Ray& world_space : rays) {
-      // The world's box cuts through the mesh; or lies beyond its near side, so that all is moved forward.
-      const Vec3 a = random.in_box(bounds.lower, bounds.upper), b = random.in_box(bounds.lower, bounds.upper);
-      const Box3 world_box = random.below(3) ? Box3{min(a, b), max(a, b)} : bounds;
-      const PreparedRay world(world_space, bounds);
-      if (!world.is_valid()) continue;
-      const Interval inside = world.interval(world_box);
-      if (inside.is_empty() || inside.exit < world.t_min || inside.entry > world.t_max) continue;
-      const PreparedRay ray(world_space.origin + (a - b) * (random.below(4) ? 0.0f : 0.25f),
-                            world_space.direction, inner_t_min(world, inside), world.t_max, bounds);
-      const Crossings expected = brute_crossings(triangles, world, ray, inside, world.t_max);
+  for (const Kernels* kernels : available_kernels())
+    for (const Layout layout : test::kLayouts) {
+      const auto tree = test::pack(kernels->width, bvh, triangles, {}, layout);
+      std::size_t wrong = 0;
+      for (const Ray& world_space : rays) {
+        // The world's box cuts through the mesh; or lies beyond its near side, so that all is moved forward.
+        const Vec3 a = random.in_box(bounds.lower, bounds.upper),
+                   b = random.in_box(bounds.lower, bounds.upper);
+        const Box3 world_box = random.below(3) ? Box3{min(a, b), max(a, b)} : bounds;
+        const PreparedRay world(world_space, bounds);
+        if (!world.is_valid()) continue;
+        const Interval inside = world.interval(world_box);
+        if (inside.is_empty() || inside.exit < world.t_min || inside.entry > world.t_max) continue;
+        const PreparedRay ray(world_space.origin + (a - b) * (random.below(4) ? 0.0f : 0.25f),
+                              world_space.direction, inner_t_min(world, inside), world.t_max, bounds);
+        const Crossings expected = brute_crossings(triangles, world, ray, inside, world.t_max);
 
-      TriangleHit hit;
-      bool is_hit = false;
-      std::vector<TriangleHit> all;
-      const Passage passage{inside, world.t_min};
-      const bool is_answered = kernels->placed_closest_hit(*tree, ray, passage, world.t_max, hit);
-      if (kernels->placed_any_hit(*tree, ray, passage, world.t_max, is_hit) != is_answered ||
-          kernels->placed_all_hits(*tree, ray, passage, world.t_max, all) != is_answered)
-        ++wrong;
-      if (!is_answered) continue;
-      Crossings found;
-      for (const TriangleHit& one : all) found.push_back({one.t, one.key});
-      std::sort(found.begin(), found.end());
-      wrong += found != expected;
-      wrong += is_hit == expected.empty() || hit.is_hit() == expected.empty();
-      if (!expected.empty() && hit.is_hit())
-        wrong += !test::same_bits(hit.t, expected.front().first) || hit.key != expected.front().second;
+        TriangleHit hit;
+        bool is_hit = false;
+        std::vector<TriangleHit> all;
+        const Passage passage{inside, world.t_min};
+        const bool is_answered = kernels->placed_closest_hit(*tree, ray, passage, world.t_max, hit);
+        if (kernels->placed_any_hit(*tree, ray, passage, world.t_max, is_hit) != is_answered ||
+            kernels->placed_all_hits(*tree, ray, passage, world.t_max, all) != is_answered)
+          ++wrong;
+        if (!is_answered) continue;
+        Crossings found;
+        for (const TriangleHit& one : all) found.push_back({one.t, one.key});
+        std::sort(found.begin(), found.end());
+        wrong += found != expected;
+        wrong += is_hit == expected.empty() || hit.is_hit() == expected.empty();
+        if (!expected.empty() && hit.is_hit())
+          wrong += !test::same_bits(hit.t, expected.front().first) || hit.key != expected.front().second;
 
-      ++asked;
-      hit_count += !expected.empty();
-      behind += ray.t_min < 0 && !expected.empty();
-      for (const auto& [t, key] : expected) at_ends += t == inside.entry || t == inside.exit;
+        ++asked;
+        hit_count += !expected.empty();
+        behind += ray.t_min < 0 && !expected.empty();
+        for (const auto& [t, key] : expected) at_ends += t == inside.entry || t == inside.exit;
+      }
+      EXPECT_EQ(wrong, 0u) << kernels->name;
     }
-    EXPECT_EQ(wrong, 0u) << kernels->name;
-  }
   if (available_kernels().empty()) return;
   EXPECT_GT(hit_count, asked / 10);
   EXPECT_GT(at_ends, 50u) << "nothing was moved by the placement's gate: too easy";

@@ -36,8 +36,11 @@ struct Packed {
   TriangleTree tree;
 
   // The tree is read-only to everybody else.
-  WideNode<W>& node(std::size_t i) { return const_cast<WideNode<W>&>(tree.nodes<W>()[i]); }
-  TriangleBlock& block(std::size_t i) { return const_cast<TriangleBlock&>(tree.blocks()[i]); }
+  WideNode<W>& node(std::size_t i) { return reinterpret_cast<WideNode<W>*>(pool())[i]; }
+  TriangleBlock& block(std::size_t i) {
+    return reinterpret_cast<TriangleBlock*>(pool() + tree.node_bytes())[i];
+  }
+  char* pool() { return const_cast<char*>(tree.pool()); }
 };
 
 #define EXPECT_SAYS(tree, words) EXPECT_NE(validate(tree).find(words), std::string::npos) << validate(tree)
@@ -56,8 +59,11 @@ TYPED_TEST(ValidatePacked, UnpackingGivesBackWhatWasPacked) {
     EXPECT_EQ(again.box, packed.wide.box);
     EXPECT_EQ(again.slots, packed.wide.slots);
     ASSERT_EQ(again.nodes.size(), packed.wide.nodes.size());
-    for (std::size_t i = 0; i < again.nodes.size(); ++i)
-      EXPECT_EQ(std::memcmp(&again.nodes[i], &packed.wide.nodes[i], sizeof again.nodes[i]), 0);
+    for (std::size_t i = 0; i < again.nodes.size(); ++i) {
+      const WideNode<W>&a = again.nodes[i], &b = packed.wide.nodes[i];
+      EXPECT_EQ(std::memcmp(a.planes, b.planes, sizeof a.planes), 0);
+      EXPECT_EQ(std::memcmp(a.children, b.children, sizeof a.children), 0);
+    }
     EXPECT_EQ(boxwood::validate(again, boxes(packed.triangles)), "");
     EXPECT_EQ(packed.tree.size_bytes(), again.nodes.size() * sizeof(WideNode<W>) + again.slots.size() * 40);
   }
@@ -68,12 +74,14 @@ TYPED_TEST(ValidatePacked, KeysMayHaveGaps) {
   for (std::uint32_t i = 0; i < 50; ++i) keys.push_back(0xfffffff0u - 7000 * i);
   const Packed<TypeParam::value> packed(50, keys);
   EXPECT_EQ(validate(packed.tree), "");
-  for (const TriangleBlock& block : packed.tree.blocks())
+  for (std::size_t i = 0; i < packed.tree.block_count(); ++i) {
+    const TriangleBlock block = packed.tree.block(i);
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       const std::uint32_t number = (0xfffffff0u - block.key[lane]) / 7000;
       const Triangle found = block.triangle(lane), expected = packed.triangles.at(number);
       EXPECT_TRUE(found.a == expected.a && found.b == expected.b && found.c == expected.c);
     }
+  }
 }
 
 TYPED_TEST(ValidatePacked, SaysWhatIsBroken) {

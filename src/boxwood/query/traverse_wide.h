@@ -36,7 +36,7 @@ void traverse_wide(const NodeAt& node_at, Q& query, Statistics& statistics) {
       query.visit(current);
     } else {
       // Put the children that may matter on the stack, the nearest last; of equals the first stays on top.
-      const WideNode<W>& node = node_at(current);
+      const auto& node = node_at(current);  // in full or quantized
       const float limit = query.limit();
       const int bottom = waiting;
       int tests = 0;

@@ -32,7 +32,7 @@ inline void name_hit(const Part& world, std::uint32_t key, Hit& hit) {
 
 /// The hit on a triangle of the world. Precondition: found.is_hit().
 inline Hit finish_triangle(const Scene::Parts& parts, const Ray& ray, const simd::TriangleHit& found) {
-  const Triangle triangle = parts.world.triangles.block_at(found.block).triangle(found.lane);
+  const Triangle triangle = parts.world.triangles.triangle(found.block, found.lane);
   Crossing crossing;
   intersect_triangle(RayShear(ray.origin, ray.direction), triangle.a, triangle.b, triangle.c, crossing);
   Hit hit;

@@ -91,12 +91,14 @@ struct TrianglePointQuery : PointQuery {
     return part.triangles.has_parts() ? least * (1 - 0x1p-20f) - slack : least;
   }
   void visit(ChildRef leaf) {
-    for (const simd::TriangleBlock& block : part.triangles.blocks_of(leaf))
+    for (std::uint32_t i = 0; i < leaf.blocks(); ++i) {
+      const simd::TriangleBlock block = part.triangles.block_of(leaf, i);
       for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
         if (is_padding(block.key, static_cast<int>(lane))) continue;
         const PartMesh& mesh = part.mesh_of(block.key[lane]);
         meet(block.triangle(lane), mesh.instance_id, PrimId(block.key[lane] - mesh.first_key));
       }
+    }
   }
 };
 

@@ -61,14 +61,15 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   std::vector<const TriangleMesh*> mesh_of_part;
   for (const PartMesh& mesh : part.meshes)
     mesh_of_part.push_back(&std::get<TriangleMesh>(desc.geometries[mesh.geometry_id.value].shapes));
-  const auto triangle_of_key = [&](PrimId key) {
-    const PartMesh& mesh = part.mesh_of(key.value);
-    return triangle_of(*mesh_of_part[std::size_t(&mesh - part.meshes.data())],
-                       PrimId(key.value - mesh.first_key));
+  const auto corners_of_key = [&](PrimId key) -> simd::Corners {
+    const PartMesh& part_mesh = part.mesh_of(key.value);
+    const TriangleMesh& mesh = *mesh_of_part[std::size_t(&part_mesh - part.meshes.data())];
+    const auto& [i, j, k] = mesh.indices[key.value - part_mesh.first_key];
+    return {mesh.positions.data(), {i, j, k}};
   };
 
   // Build and collapse; let go of what the next step does not need.
-  const Clip clip = [&](PrimId key, const Box3& region) { return triangle_of_key(key).clipped_box(region); };
+  const Clip clip = [&](PrimId key, const Box3& region) { return corners_of_key(key).triangle().clipped_box(region); };
   BuildOptions in_blocks = options;
   in_blocks.block_size = kBlockWidth;  // a block is tested at the price of one triangle
   Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, in_blocks);
@@ -76,10 +77,11 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   WideBvh<W> wide = collapse<W>(bvh, executor);
   wide.has_parts = bvh.prim_ids.size() > count;
   bvh = {};
-  const simd::TriangleTree::Fetch fetch = [&](const PrimId* keys, Triangle* triangles) {
-    for (int lane = 0; lane < kBlockWidth; ++lane) triangles[lane] = triangle_of_key(keys[lane]);
+  const simd::TriangleTree::Fetch fetch = [&](const PrimId* keys, simd::Corners* corners) {
+    for (int lane = 0; lane < kBlockWidth; ++lane) corners[lane] = corners_of_key(keys[lane]);
   };
-  return simd::TriangleTree(wide, fetch, executor);
+  return simd::TriangleTree(wide, fetch, options.is_compact ? simd::Layout::compact : simd::Layout::full,
+                            executor);
 }
 
 /// Builds a tree over `items`, puts them into leaf order and makes prim_ids count along.

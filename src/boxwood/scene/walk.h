@@ -46,16 +46,23 @@ struct UnderPlacement {
 /// What a sink is there for; says which kernel serves it.
 enum class Question { closest, any, all };
 
-/// Shows every leaf of the tree that may matter to `query`, whatever the tree's width.
+/// Shows every leaf of the tree that may matter to `query`, whatever the tree's layout and width.
+template <int W, WideQuery Q, class Statistics>
+void traverse_triangles_as(const simd::TriangleTree& tree, Q& query, Statistics& statistics) {
+  if (tree.layout() == simd::Layout::full)
+    traverse_wide<W>(
+        [&](ChildRef node) -> const auto& { return tree.full_node<W>(node); }, query, statistics);
+  else
+    traverse_wide<W>(
+        [&](ChildRef node) -> const auto& { return tree.compact_node<W>(node); }, query, statistics);
+}
 template <WideQuery Q, class Statistics>
 void traverse_triangles(const simd::TriangleTree& tree, Q& query, Statistics& statistics) {
   if (tree.is_empty()) return;
   if (tree.width() == 4)
-    traverse_wide<4>(
-        [&](ChildRef node) -> const auto& { return tree.node_at<4>(node); }, query, statistics);
+    traverse_triangles_as<4>(tree, query, statistics);
   else
-    traverse_wide<8>(
-        [&](ChildRef node) -> const auto& { return tree.node_at<8>(node); }, query, statistics);
+    traverse_triangles_as<8>(tree, query, statistics);
 }
 
 /// Names the crossings of one triangle, once there are any.
@@ -91,7 +98,8 @@ class TriangleQuery {
     return above_.gate(any).limit();
   }
   void visit(ChildRef leaf) {
-    for (const simd::TriangleBlock& block : part_.triangles.blocks_of(leaf)) {
+    for (std::uint32_t i = 0; i < leaf.blocks(); ++i) {
+      const simd::TriangleBlock block = part_.triangles.block_of(leaf, i);
       for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
         if (is_padding(block.key, static_cast<int>(lane))) continue;
         statistics_.count_shapes(1);
@@ -186,7 +194,7 @@ class PlacementQuery {
     if (!kernels || !tree.is_ordinary()) return false;
     const simd::Passage passage{above.inside, ray_.t_min};
     const auto report = [&](const simd::TriangleHit& hit) {
-      const Triangle triangle = tree.block_at(hit.block).triangle(hit.lane);
+      const Triangle triangle = tree.triangle(hit.block, hit.lane);
       Crossing crossing;
       intersect_triangle(local, triangle.a, triangle.b, triangle.c, crossing);
       crossing.t = hit.t;

@@ -27,7 +27,7 @@ inline void write_answer(const TriangleHit& hit, bool& answer) {
 
 /// hits[i] answers rays[i], where the ray is ordinary; `unusual` gets the indices of the others. Answer is
 /// bool for any hit, TriangleHit for the closest.
-template <class Answer>
+template <class Layout, class Answer>
 void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, Answer* hits,
                  std::vector<std::uint32_t>& unusual) {
   constexpr bool kAny = std::is_same_v<Answer, bool>;
@@ -39,7 +39,7 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
     // Trace bundles; note the rest.
     const std::size_t end = std::min(rays.size(), begin + kAtOnce);
     std::size_t count = 0, bundle_count = 0, bundle_begin[2];
-    Bundle<kAny> bundles[2];
+    Bundle<Layout, kAny> bundles[2];
     const auto trace = [&] {
       trace_bundles(pool, std::span(bundles, bundle_count));
       for (std::size_t k = 0; k < bundle_count; ++k) bundles[k].store(&hits[bundle_begin[k]]);
@@ -62,7 +62,8 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
     const std::span<const std::uint32_t> rest(order, count);
     if (tree.max_stack() + kWidth <= kShortStack) {
       static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
-      Interleaved<kAny, decltype(output)>(tree, bounds, rays.data(), rest, output, unusual).run(flight.get());
+      Interleaved<Layout, kAny, decltype(output)>(tree, bounds, rays.data(), rest, output, unusual)
+          .run(flight.get());
       continue;
     }
     for (const std::uint32_t i : rest) {
@@ -73,9 +74,9 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
       }
       TriangleHit hit{rays[i].t_max + 0.0f};
       if constexpr (kAny) {
-        if (any_hit_one(pool, ray, Direct{}, hit.t)) hit.block = 0;
+        if (any_hit_one<Layout>(pool, ray, Direct{}, hit.t)) hit.block = 0;
       } else {
-        closest_hit_one(pool, ray, Direct{}, hit);
+        closest_hit_one<Layout>(pool, ray, Direct{}, hit);
       }
       output(i, hit);
     }

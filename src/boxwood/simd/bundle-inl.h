@@ -35,7 +35,7 @@ struct Range {
   float size() const { return high - low; }
 };
 
-template <bool kAny>
+template <class Layout, bool kAny>
 class Bundle {
  public:
   /// Written out: gcc compiles an implicit one for the plain machine, where vectors cannot be made.
@@ -134,13 +134,14 @@ class Bundle {
     const char* node = node_at(pool, parent);
     const MB active = test_box(node, child);
     if (hn::AllFalse(DB(), active)) return true;
-    const auto ref = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes)[child];
+    const auto ref = static_cast<std::uint32_t>(children_of<Layout>(node)[child]);
     if ((ref & 3) == 0) {
       top_ += push(pool, ref, keys_ + top_, refs_ + top_);
       return true;
     }
-    const TriangleBlock* block = block_at(pool, ref);
-    for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) test_block(*block, pool, active);
+    const char* block = blocks_at(pool, ref);
+    for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes)
+      test_block(Layout::block(block), units(pool, block), active);
     last_t_ = hn::GetLane(hn::MaxOfLanes(DB(), limit_));
     if (kAny && last_t_ < 0) top_ = 0;
     return true;
@@ -204,11 +205,10 @@ class Bundle {
                               std::int32_t* refs) const {
     const DW d;
     const DIW di;
-    const char* node = node_at(pool, ref);
+    const typename Layout::Planes planes(node_at(pool, ref));
     VIW entry = hn::BitCast(di, hn::Set(d, first_t_)), exit = hn::BitCast(di, hn::Set(d, last_t_));
     for (int k = 0; k < 3; ++k) {
-      const VW near = hn::Load(d, reinterpret_cast<const float*>(node + near_row_[k]));
-      const VW far = hn::Load(d, reinterpret_cast<const float*>(node + far_row_[k]));
+      const VW near = planes.row(k, near_row_[k]), far = planes.row(k, far_row_[k]);
       entry = hn::Max(entry, hn::BitCast(di, hn::Min(hn::MulAdd(near, low_inverse_[k], near_low_[k]),
                                                      hn::MulAdd(near, high_inverse_[k], near_high_[k]))));
       exit = hn::Min(exit, hn::BitCast(di, hn::Max(hn::MulAdd(far, low_inverse_[k], far_low_[k]),
@@ -228,18 +228,19 @@ class Bundle {
   HWY_INLINE MB test_box(const char* node, std::uint32_t child) const {
     const DB d;
     const DIB di;
+    const typename Layout::Planes planes(node);
     VIB entry = hn::BitCast(di, t_min_), exit = hn::BitCast(di, limit_);
     for (int k = 0; k < 3; ++k) {
-      const VB near = hn::Set(d, reinterpret_cast<const float*>(node + near_row_[k])[child]);
-      const VB far = hn::Set(d, reinterpret_cast<const float*>(node + far_row_[k])[child]);
+      const VB near = hn::Set(d, planes.plane(k, near_row_[k], child));
+      const VB far = hn::Set(d, planes.plane(k, far_row_[k], child));
       entry = hn::Max(entry, hn::BitCast(di, hn::MulAdd(near, inverse_[k], near_shift_[k])));
       exit = hn::Min(exit, hn::BitCast(di, hn::MulAdd(far, inverse_[k], far_shift_[k])));
     }
     return hn::Le(hn::BitCast(d, entry), hn::BitCast(d, exit));
   }
 
-  /// Takes the crossings of the block's triangles by the rays of `active`.
-  HWY_INLINE void test_block(const TriangleBlock& block, const char* pool, MB active) {
+  /// Takes the crossings of the triangles of the block at `at` by the rays of `active`.
+  HWY_INLINE void test_block(const TriangleBlock& block, std::uint32_t at, MB active) {
     // The edges of all four before the first branch: most triangles are missed by all rays, and which are not
     // is hard to foresee.
     VB products[kBlockWidth];
@@ -253,7 +254,7 @@ class Bundle {
     const Faces faces(block, axis_);
     for (; crossed; crossed &= crossed - 1) {
       const int lane = __builtin_ctz(crossed);
-      test_plane(block, faces, lane, products[lane], pool, active);
+      test_plane(block, at, faces, lane, products[lane], active);
     }
   }
 
@@ -311,8 +312,8 @@ class Bundle {
   };
 
   /// test_planes() of one triangle for the rays of `active` that cross it by `product`.
-  HWY_INLINE void test_plane(const TriangleBlock& block, const Faces& faces, int lane, VB product,
-                             const char* pool, MB active) {
+  HWY_INLINE void test_plane(const TriangleBlock& block, std::uint32_t at, const Faces& faces, int lane,
+                             VB product, MB active) {
     const DB d;
     const DIB di;
     const auto maybe = hn::AndNot(hn::Lt(product, hn::Zero(d)), active);
@@ -347,10 +348,9 @@ class Bundle {
     const auto taken = hn::And(hn::And(crossed, in_range), comes_first);
 
     const auto taken_i = hn::RebindMask(di, taken);
-    const auto at = static_cast<std::int32_t>((reinterpret_cast<const char*>(&block) - pool) / 32);
     limit_ = hn::IfThenElse(taken, kAny ? hn::Set(d, -kInfinity) : t, limit_);
     key_ = hn::IfThenElse(taken_i, key, key_);
-    block_ = hn::IfThenElse(taken_i, hn::Set(di, at), block_);
+    block_ = hn::IfThenElse(taken_i, hn::Set(di, static_cast<std::int32_t>(at)), block_);
     lane_ = hn::IfThenElse(taken_i, hn::Set(di, lane), lane_);
   }
 
@@ -395,13 +395,13 @@ class Bundle {
 };
 
 /// Traces two bundles in turns, so that one works while the other waits; or one alone.
-template <bool kAny>
-HWY_NOINLINE void trace_bundles(const char* pool, std::span<Bundle<kAny>> bundles) {
-  for (Bundle<kAny>& bundle : bundles) bundle.start(pool);
+template <class Bundle>
+HWY_NOINLINE void trace_bundles(const char* pool, std::span<Bundle> bundles) {
+  for (Bundle& bundle : bundles) bundle.start(pool);
   if (bundles.size() == 2)
     while (bundles[0].step(pool) && bundles[1].step(pool)) {
     }
-  for (Bundle<kAny>& bundle : bundles)
+  for (Bundle& bundle : bundles)
     while (bundle.step(pool)) {
     }
 }

@@ -14,8 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "boxwood/simd/node-inl.h"
+#include "boxwood/simd/layout-inl.h"
 #include "boxwood/simd/triangle_tree.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -97,27 +98,63 @@ HWY_INLINE void find_normals(const VF (&v)[3][3], VF (&normal)[3]) {
   for (int k = 0; k < 3; ++k) normal[k] = hn::Combine(DF(), upper[k], lower[k]);
 }
 
+/// Fetches the vertices of kFinished hits, found[ray_index[i]].
+template <class Layout>
+struct VertexFetch;
+
+template <>
+struct VertexFetch<FullLayout> {
+  static HWY_INLINE void run(const TriangleTree& tree, const TriangleHit* found,
+                             const std::uint32_t* ray_index, VF (&v)[3][3]) {
+    // Offsets count floats, from the middle of what 32 bits reach.
+    const DF d;
+    const DIF di;
+    const VIF at = hn::ShiftLeft<2>(hn::Load(di, reinterpret_cast<const std::int32_t*>(ray_index)));
+    const auto* words = reinterpret_cast<const std::int32_t*>(found);
+    const VIF block = hn::GatherIndex(di, words + 2, at), lane = hn::GatherIndex(di, words + 3, at);
+    const VIF vertex_at = hn::Add(
+        hn::Xor(hn::ShiftLeft<3>(block), hn::Set(di, std::numeric_limits<std::int32_t>::min())), lane);
+    const std::uintptr_t middle = reinterpret_cast<std::uintptr_t>(tree.pool()) + (std::uintptr_t(1) << 33);
+    for (unsigned i = 0; i < 3; ++i)
+      for (unsigned k = 0; k < 3; ++k)
+        v[i][k] = hn::GatherIndex(d, reinterpret_cast<const float*>(middle + 48 * i + 16 * k), vertex_at);
+  }
+};
+
+template <>
+struct VertexFetch<CompactLayout> {
+  static HWY_INLINE void run(const TriangleTree& tree, const TriangleHit* found,
+                             const std::uint32_t* ray_index, VF (&v)[3][3]) {
+    HWY_ALIGN float vertices[3][3][kFinished];
+    for (std::size_t n = 0; n < kFinished; ++n) {
+      const TriangleHit& hit = found[ray_index[n]];
+      const Triangle triangle = tree.triangle(hit.block, hit.lane);
+      for (int k = 0; k < 3; ++k) {
+        vertices[0][k][n] = triangle.a[k];
+        vertices[1][k][n] = triangle.b[k];
+        vertices[2][k][n] = triangle.c[k];
+      }
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) v[i][k] = hn::Load(DF(), vertices[i][k]);
+  }
+};
+
 /// Works out kFinished hits, of which `count` are wanted.
+template <class Layout>
 HWY_INLINE void finish_group(const TriangleTree& tree, const Ray* rays, const TriangleHit* found,
                              const std::uint32_t* ray_index, std::size_t count, Hit* hits) {
   const DF d;
   const DIF di;
   const VIF index = hn::Load(di, reinterpret_cast<const std::int32_t*>(ray_index));
 
-  // Fetch rays and triangles. Offsets count floats from the middle of what 32 bits reach.
   VF origin[3], direction[3], v[3][3], normal[3];
-  const VIF ray_at = hn::ShiftLeft<3>(index), found_at = hn::ShiftLeft<2>(index);
+  const VIF ray_at = hn::ShiftLeft<3>(index);
   for (int k = 0; k < 3; ++k) {
     origin[k] = hn::GatherIndex(d, &rays->origin.x + k, ray_at);
     direction[k] = hn::GatherIndex(d, &rays->direction.x + k, ray_at);
   }
-  const auto* words = reinterpret_cast<const std::int32_t*>(found);
-  const VIF block = hn::GatherIndex(di, words + 2, found_at), lane = hn::GatherIndex(di, words + 3, found_at);
-  const VIF vertex_at = hn::Add(hn::Xor(hn::ShiftLeft<3>(block), hn::Set(di, INT32_MIN)), lane);
-  const std::uintptr_t middle = reinterpret_cast<std::uintptr_t>(tree.pool()) + (std::uintptr_t(1) << 33);
-  for (unsigned i = 0; i < 3; ++i)
-    for (unsigned k = 0; k < 3; ++k)
-      v[i][k] = hn::GatherIndex(d, reinterpret_cast<const float*>(middle + 48 * i + 16 * k), vertex_at);
+  VertexFetch<Layout>::run(tree, found, ray_index, v);
 
   find_normals(v, normal);
   const Weights weights = weigh(v, origin, direction);
@@ -138,7 +175,7 @@ HWY_INLINE void finish_group(const TriangleTree& tree, const Ray* rays, const Tr
     // Weights that the scalar test would take through its exact branch go there.
     const float size = std::fabs(sums[n]);
     if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) continue;
-    const Triangle triangle = tree.block_at(found[i].block).triangle(found[i].lane);
+    const Triangle triangle = tree.triangle(found[i].block, found[i].lane);
     Crossing crossing;
     intersect_triangle(RayShear(rays[i].origin, rays[i].direction), triangle.a, triangle.b, triangle.c,
                        crossing);
@@ -147,36 +184,38 @@ HWY_INLINE void finish_group(const TriangleTree& tree, const Ray* rays, const Tr
   }
 }
 
-inline void finish_list(HitList& list, const TriangleTree& tree, const Ray* rays, const TriangleHit* found,
-                        Hit* hits) {
+template <class Layout>
+void finish_list(HitList& list, const TriangleTree& tree, const Ray* rays, const TriangleHit* found,
+                 Hit* hits) {
   // Whole vectors: what is missing in the last one is its last hit once more.
   for (std::size_t n = list.count; n % kFinished != 0; ++n)
     list.ray_index[n] = list.ray_index[list.count - 1];
   for (std::size_t n = 0; n < list.count; n += kFinished)
-    finish_group(tree, rays, found, list.ray_index + n, std::min(kFinished, list.count - n), hits);
+    finish_group<Layout>(tree, rays, found, list.ray_index + n, std::min(kFinished, list.count - n), hits);
   list.count = 0;
 }
 
-inline void finish_all(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
-                       Hit* hits) {
+template <class Layout>
+void finish_all(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found, Hit* hits) {
   HitList list;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Without a branch: who hits is hard to foresee.
     const std::uint32_t is_hit = found[i].is_hit();
-    const char* block = reinterpret_cast<const char*>(&tree.block_at(found[i].block & (0u - is_hit)));
+    const char* block = tree.pool() + std::size_t(found[i].block & (0u - is_hit)) * TriangleTree::kUnit;
     for (int line = 0; line < 3; ++line) __builtin_prefetch(block + 64 * line);
     hits[i] = Hit{};
     list.ray_index[list.count] = static_cast<std::uint32_t>(i);
     list.count += is_hit;
-    if (list.count == HitList::kSize) finish_list(list, tree, rays.data(), found, hits);
+    if (list.count == HitList::kSize) finish_list<Layout>(list, tree, rays.data(), found, hits);
   }
-  finish_list(list, tree, rays.data(), found, hits);
+  finish_list<Layout>(list, tree, rays.data(), found, hits);
 }
 
 /// Works out one hit, whose ray is still at hand.
+template <class Layout>
 HWY_INLINE void finish_one(const TriangleTree& tree, const KernelRay& ray, const TriangleHit& found,
                            Hit& hit) {
-  const TriangleBlock& block = tree.block_at(found.block);
+  const TriangleBlock& block = Layout::block(tree.pool() + std::size_t(found.block) * TriangleTree::kUnit);
   const char* lane = reinterpret_cast<const char*>(&block) + 4 * found.lane;
   const auto from_origin = [&](int vertex, int k) {
     return ray.origin[k] - *reinterpret_cast<const float*>(lane + 48 * vertex + ray.axis_row[k]);

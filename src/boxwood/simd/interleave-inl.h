@@ -42,11 +42,11 @@ struct alignas(64) RayInFlight {
 /// A block whose planes are still to be tested.
 struct OpenBlock {
   RayInFlight* ray;
-  const TriangleBlock* block;
+  const char* block;
   Crossed crossed;
 };
 
-template <bool kAny, class Output>
+template <class Layout, bool kAny, class Output>
 class Interleaved {
  public:
   /// Traces rays[i] for each i of `order`.
@@ -101,7 +101,7 @@ class Interleaved {
   HWY_INLINE void append(RayInFlight& ray, std::int32_t* top, List& nodes, List& leaves, List& done) {
     ray.top = top;
     const auto next = static_cast<std::uint32_t>(*top);
-    prefetch_lines(node_at(pool_, next));
+    prefetch_lines<Layout::kNodeLines>(node_at(pool_, next));
     *nodes.end = *leaves.end = *done.end = &ray;
     const std::uint32_t kind = next & 3;
     done.end += kind >> 1;
@@ -135,8 +135,8 @@ class Interleaved {
     const DIW di;
     std::int32_t* top = ray.top;
     const char* node = node_at(pool_, static_cast<std::uint32_t>(*top));
-    const Slabs slabs = BoxRay<false>(ray.ray).cross(node, ray.hit.t);
-    const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
+    const Slabs slabs = BoxRay<false>(ray.ray).template cross<Layout>(node, ray.hit.t);
+    const std::int32_t* children = children_of<Layout>(node);
     const std::size_t count = hn::CountTrue(di, slabs.enters);
     if constexpr (kAny) {
       hn::StoreU(hn::Compress(hn::Load(di, children), slabs.enters), di, top);
@@ -153,9 +153,9 @@ class Interleaved {
     for (RayInFlight** i = lists_[kLeaf]; i != end; ++i) {
       RayInFlight* ray = *i;
       const auto ref = static_cast<std::uint32_t>(*ray->top);
-      const TriangleBlock* block = block_at(pool_, ref);
-      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) {
-        *open = {ray, block, test_edges(*block, ray->ray)};
+      const char* block = blocks_at(pool_, ref);
+      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
+        *open = {ray, block, test_edges(Layout::block(block), ray->ray)};
         open += open->crossed.maybe != 0;
       }
     }
@@ -164,13 +164,14 @@ class Interleaved {
     for (OpenBlock* o = open_; o != open; ++o) {
       RayInFlight& ray = *o->ray;
       HWY_ALIGN float ts[kBlockWidth];
-      const std::uint32_t lanes = test_planes(*o->block, ray.ray, o->crossed, ray.hit.t, ts);
+      const TriangleBlock& block = Layout::block(o->block);
+      const std::uint32_t lanes = test_planes(block, ray.ray, o->crossed, ray.hit.t, ts);
       if constexpr (kAny) {
         if (lanes == 0) continue;
         ray.hit.block = 0;
         ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
       } else {
-        if (lanes && take_closest(pool_, o->block, lanes, ts, ray.hit)) cull(ray);
+        if (lanes && take_closest(block, units(pool_, o->block), lanes, ts, ray.hit)) cull(ray);
       }
     }
   }

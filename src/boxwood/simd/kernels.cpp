@@ -13,78 +13,97 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit) {
-  KernelRay kernel_ray;
-  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
-  hit = {ray.t_max + 0.0f};
-  closest_hit_one(tree.pool(), kernel_ray, Direct{}, hit);
-  if (!hit.is_hit()) hit.t = kInfinity;
-  return true;
-}
+/// The kernels of one layout.
+template <class Layout>
+struct KernelsFor {
+  static bool closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit) {
+    KernelRay kernel_ray;
+    if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
+    hit = {ray.t_max + 0.0f};
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit);
+    if (!hit.is_hit()) hit.t = kInfinity;
+    return true;
+  }
 
-bool closest_full_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit,
-                      Hit& full) {
-  KernelRay kernel_ray;
-  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
-  hit = {ray.t_max + 0.0f};
-  closest_hit_one(tree.pool(), kernel_ray, Direct{}, hit);
-  if (hit.is_hit())
-    finish_one(tree, kernel_ray, hit, full);
-  else
-    hit.t = kInfinity;
-  return true;
-}
+  static bool closest_full_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, TriangleHit& hit,
+                               Hit& full) {
+    KernelRay kernel_ray;
+    if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
+    hit = {ray.t_max + 0.0f};
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit);
+    if (hit.is_hit())
+      finish_one<Layout>(tree, kernel_ray, hit, full);
+    else
+      hit.t = kInfinity;
+    return true;
+  }
 
-bool any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit) {
-  KernelRay kernel_ray;
-  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
-  is_hit = any_hit_one(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f);
-  return true;
-}
+  static bool any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds, bool& is_hit) {
+    KernelRay kernel_ray;
+    if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
+    is_hit = any_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f);
+    return true;
+  }
 
-bool all_hits(const TriangleTree& tree, const Ray& ray, const Box3& bounds, std::vector<TriangleHit>& hits) {
-  KernelRay kernel_ray;
-  if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
-  all_hits_one(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f, hits);
-  return true;
-}
+  static bool all_hits(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
+                       std::vector<TriangleHit>& hits) {
+    KernelRay kernel_ray;
+    if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
+    all_hits_one<Layout>(tree.pool(), kernel_ray, Direct{}, ray.t_max + 0.0f, hits);
+    return true;
+  }
 
-bool placed_closest_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
-                        TriangleHit& hit) {
-  if (!is_ordinary(ray, tree.box())) return false;
-  hit = {t_max + 0.0f};
-  closest_hit_one(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, hit);
-  if (!hit.is_hit()) hit.t = kInfinity;
-  return true;
-}
+  static bool placed_closest_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
+                                 float t_max, TriangleHit& hit) {
+    if (!is_ordinary(ray, tree.box())) return false;
+    hit = {t_max + 0.0f};
+    closest_hit_one<Layout>(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, hit);
+    if (!hit.is_hit()) hit.t = kInfinity;
+    return true;
+  }
 
-bool placed_any_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
-                    bool& is_hit) {
-  if (!is_ordinary(ray, tree.box())) return false;
-  is_hit = any_hit_one(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f);
-  return true;
-}
+  static bool placed_any_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
+                             float t_max, bool& is_hit) {
+    if (!is_ordinary(ray, tree.box())) return false;
+    is_hit = any_hit_one<Layout>(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f);
+    return true;
+  }
 
-bool placed_all_hits(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage, float t_max,
-                     std::vector<TriangleHit>& hits) {
-  if (!is_ordinary(ray, tree.box())) return false;
-  all_hits_one(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f, hits);
-  return true;
-}
+  static bool placed_all_hits(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
+                              float t_max, std::vector<TriangleHit>& hits) {
+    if (!is_ordinary(ray, tree.box())) return false;
+    all_hits_one<Layout>(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f, hits);
+    return true;
+  }
 
-void closest_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, TriangleHit* hits,
-                  std::vector<std::uint32_t>& unusual) {
-  trace_batch(tree, rays, bounds, hits, unusual);
-}
+  static void closest_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
+                           TriangleHit* hits, std::vector<std::uint32_t>& unusual) {
+    trace_batch<Layout>(tree, rays, bounds, hits, unusual);
+  }
 
-void any_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
-              std::vector<std::uint32_t>& unusual) {
-  trace_batch(tree, rays, bounds, hits, unusual);
-}
+  static void any_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
+                       std::vector<std::uint32_t>& unusual) {
+    trace_batch<Layout>(tree, rays, bounds, hits, unusual);
+  }
 
-void finish_hits(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found, Hit* hits) {
-  finish_all(tree, rays, found, hits);
-}
+  static void finish_hits(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
+                          Hit* hits) {
+    finish_all<Layout>(tree, rays, found, hits);
+  }
+};
+
+/// Asks the kernel of the tree's layout.
+template <auto kFull, auto kCompact>
+struct Either;
+template <class Result, class... Args, Result (*kFull)(const TriangleTree&, Args...),
+          Result (*kCompact)(const TriangleTree&, Args...)>
+struct Either<kFull, kCompact> {
+  static Result ask(const TriangleTree& tree, Args... args) {
+    return tree.layout() == Layout::full ? kFull(tree, args...) : kCompact(tree, args...);
+  }
+};
+using Full = KernelsFor<FullLayout>;
+using Compact = KernelsFor<CompactLayout>;
 
 constexpr std::string_view target_name() {
   switch (HWY_TARGET) {
@@ -104,9 +123,18 @@ constexpr std::string_view target_name() {
 }
 
 const Kernels* table() {
-  static constexpr Kernels kTable{target_name(),   kWidth,       closest_hit,        closest_full_hit,
-                                  any_hit,         all_hits,     placed_closest_hit, placed_any_hit,
-                                  placed_all_hits, closest_hits, any_hits,           finish_hits};
+  static constexpr Kernels kTable{target_name(),
+                                  kWidth,
+                                  Either<Full::closest_hit, Compact::closest_hit>::ask,
+                                  Either<Full::closest_full_hit, Compact::closest_full_hit>::ask,
+                                  Either<Full::any_hit, Compact::any_hit>::ask,
+                                  Either<Full::all_hits, Compact::all_hits>::ask,
+                                  Either<Full::placed_closest_hit, Compact::placed_closest_hit>::ask,
+                                  Either<Full::placed_any_hit, Compact::placed_any_hit>::ask,
+                                  Either<Full::placed_all_hits, Compact::placed_all_hits>::ask,
+                                  Either<Full::closest_hits, Compact::closest_hits>::ask,
+                                  Either<Full::any_hits, Compact::any_hits>::ask,
+                                  Either<Full::finish_hits, Compact::finish_hits>::ask};
   return &kTable;
 }
 

@@ -8,15 +8,10 @@
 #define BOXWOOD_SIMD_NODE_INL_H
 #endif
 
-#include "boxwood/simd/ray-inl.h"
+#include "boxwood/simd/layout-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
-
-using DW = hn::FixedTag<float, kWidth>;
-using DIW = hn::FixedTag<std::int32_t, kWidth>;
-using VW = hn::Vec<DW>;
-using VIW = hn::Vec<DIW>;
 
 /// The part of the ray inside each child: bits of floats that are not negative order as the floats do, so the
 /// largest and smallest are found among integers, which takes a quarter of the time. A negative entry gives
@@ -45,17 +40,15 @@ struct BoxRay {
     t_min = hn::Set(d, ray.t_min);
   }
 
+  template <class Layout>
   HWY_INLINE Slabs cross(const char* node, float limit) const {
     const DW d;
     const DIW di;
+    const typename Layout::Planes planes(node);
     const auto near = [&](int k) {
-      const VW planes = hn::Load(d, reinterpret_cast<const float*>(node + near_row[k]));
-      return hn::MulAdd(planes, inverse[k], near_shift[k]);
+      return hn::MulAdd(planes.row(k, near_row[k]), inverse[k], near_shift[k]);
     };
-    const auto far = [&](int k) {
-      const VW planes = hn::Load(d, reinterpret_cast<const float*>(node + far_row[k]));
-      return hn::MulAdd(planes, inverse[k], far_shift[k]);
-    };
+    const auto far = [&](int k) { return hn::MulAdd(planes.row(k, far_row[k]), inverse[k], far_shift[k]); };
     if constexpr (kSigned) {
       const VW entry = hn::Max(hn::Max(near(0), near(1)), hn::Max(near(2), t_min));
       const VW exit = hn::Min(hn::Min(far(0), far(1)), hn::Min(far(2), hn::Set(d, limit)));
@@ -114,15 +107,6 @@ HWY_INLINE hn::Vec<D> sort_all_descending(D d, hn::Vec<D> keys) {
     return sort_descending(keys);
   else
     return sort_eight_descending(d, keys);
-}
-
-HWY_INLINE void prefetch_lines(const char* p) {
-  __builtin_prefetch(p);
-  __builtin_prefetch(p + 64);
-  if (kWidth == 8) {
-    __builtin_prefetch(p + 128);
-    __builtin_prefetch(p + 192);
-  }
 }
 
 }  // namespace boxwood::simd::HWY_NAMESPACE

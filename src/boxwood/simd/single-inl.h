@@ -22,11 +22,9 @@ inline constexpr int kStackSize = kMaxWideStack<kWidth> + kWidth;
 /// The bottom of a stack: neither node nor leaf.
 inline constexpr std::uint32_t kBottom = 2;
 
-HWY_INLINE const TriangleBlock* block_at(const char* pool, std::uint32_t ref) {
-  return reinterpret_cast<const TriangleBlock*>(pool + std::size_t(ref & ~15u) * 2);
-}
-HWY_INLINE const char* node_at(const char* pool, std::uint32_t ref) {
-  return pool + std::size_t(ref) * 2;
+/// The first block of a leaf.
+HWY_INLINE const char* blocks_at(const char* pool, std::uint32_t ref) {
+  return pool + std::size_t(ref & ~15u) * 2;
 }
 
 /// How t is moved on its way from the tree to the answer: not at all in the world, and below a placement as
@@ -48,34 +46,42 @@ struct Moved {
   bool admits(float t) const { return t >= passage.t_min; }
 };
 
-/// Takes the crossings of `lanes`, keeps the first in the order of the contract. Returns whether `hit`
-/// changed.
+/// What names a block in a hit.
+HWY_INLINE std::uint32_t units(const char* pool, const char* block) {
+  return static_cast<std::uint32_t>(static_cast<std::size_t>(block - pool) / TriangleTree::kUnit);
+}
+
+/// Takes the crossings of `lanes` of the block at `at`, keeps the first in the order of the contract. Returns
+/// whether `hit` changed.
 template <class Way = Direct>
-HWY_INLINE bool take_closest(const char* pool, const TriangleBlock* block, std::uint32_t lanes,
+HWY_INLINE bool take_closest(const TriangleBlock& block, std::uint32_t at, std::uint32_t lanes,
                              const float* ts, TriangleHit& hit, const Way& way = {}) {
   bool changed = false;
   for (; lanes; lanes &= lanes - 1) {
     const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
     const float t = way.move(ts[lane]);
-    if (!way.admits(t) || t > hit.t || (t == hit.t && block->key[lane] >= hit.key)) continue;
-    hit = {t, block->key[lane],
-           static_cast<std::uint32_t>((reinterpret_cast<const char*>(block) - pool) / 32), lane};
+    if (!way.admits(t) || t > hit.t || (t == hit.t && block.key[lane] >= hit.key)) continue;
+    hit = {t, block.key[lane], at, lane};
     changed = true;
   }
   return changed;
 }
 
-/// Tests the blocks of a leaf against [ray.t_min, hit.t].
-template <class Way>
-HWY_INLINE void visit_leaf(const char* pool, std::uint32_t ref, const KernelRay& ray, const Way& way,
-                           TriangleHit& hit) {
-  const TriangleBlock* block = block_at(pool, ref);
-  for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, ++block) {
-    const Crossed crossed = test_edges(*block, ray);
+/// Calls take(block, its place, lanes, ts) with the crossings in each block of a leaf at a t in [ray.t_min,
+/// limit()]; ends early when that returns true, and returns whether it did.
+template <class Layout, class Limit, class Take>
+HWY_INLINE bool visit_leaf(const char* pool, std::uint32_t ref, const KernelRay& ray, const Limit& limit,
+                           const Take& take) {
+  const char* p = blocks_at(pool, ref);
+  for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, p += Layout::kBlockBytes) {
+    const TriangleBlock& block = Layout::block(p);
+    const Crossed crossed = test_edges(block, ray);
     if (crossed.maybe == 0) continue;
     HWY_ALIGN float ts[kBlockWidth];
-    take_closest(pool, block, test_planes(*block, ray, crossed, way.limit(hit.t), ts), ts, hit, way);
+    const std::uint32_t lanes = test_planes(block, ray, crossed, limit(), ts);
+    if (take(block, units(pool, p), lanes, ts)) return true;
   }
+  return false;
 }
 
 /// The first four lanes of a vector of children, and four lanes as such a vector.
@@ -123,7 +129,7 @@ HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const s
 
 /// Not inlined: the compiler would take the constants apart where they were put together, at each node anew.
 /// result.t is the limit before.
-template <class Way>
+template <class Layout, class Way>
 HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const Way& way,
                                   TriangleHit& result) {
   const DIW di;
@@ -137,8 +143,8 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
   while (true) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = box_ray.cross(node, way.limit(hit.t));
-      const auto* children = reinterpret_cast<const std::int32_t*>(node + 6 * kRowBytes);
+      const Slabs slabs = box_ray.template cross<Layout>(node, way.limit(hit.t));
+      const std::int32_t* children = children_of<Layout>(node);
       const std::uint32_t bits = mask_bits(di, slabs.enters);
       if (bits != 0) {
         if ((bits & (bits - 1)) == 0) {
@@ -152,7 +158,7 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
           hn::Store(slabs.entry, di, entry);
           const int i = __builtin_ctz(bits), j = __builtin_ctz(others);
           const int near = entry[i] <= entry[j] ? i : j, far = i ^ j ^ near;
-          prefetch_lines(node_at(pool, static_cast<std::uint32_t>(children[far])));
+          prefetch_lines<Layout::kNodeLines>(node_at(pool, static_cast<std::uint32_t>(children[far])));
           ++top;
           keys[top] = entry[far];
           refs[top] = children[far];
@@ -161,7 +167,8 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
         }
         const auto count = static_cast<std::size_t>(__builtin_popcount(bits));
         for (std::uint32_t b = bits; b; b &= b - 1)
-          prefetch_lines(node_at(pool, static_cast<std::uint32_t>(children[__builtin_ctz(b)])));
+          prefetch_lines<Layout::kNodeLines>(
+              node_at(pool, static_cast<std::uint32_t>(children[__builtin_ctz(b)])));
         push_children(di, make_keys(slabs.entry), slabs.enters, children, count, keys + top + 1,
                       refs + top + 1);
         top += count - 1;
@@ -170,7 +177,12 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
       }
     } else {
       if (current == kBottom) break;
-      visit_leaf(pool, current, ray, way, hit);
+      visit_leaf<Layout>(
+          pool, current, ray, [&] { return way.limit(hit.t); },
+          [&](const TriangleBlock& block, std::uint32_t at, std::uint32_t lanes, const float* ts) {
+            take_closest(block, at, lanes, ts, hit, way);
+            return false;
+          });
     }
     const std::int32_t limit_key = std::bit_cast<std::int32_t>(way.limit(hit.t)) | 7;
     while (keys[top] > limit_key) --top;
@@ -180,7 +192,7 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
   result = hit;
 }
 
-template <class Way>
+template <class Layout, class Way>
 HWY_NOINLINE bool any_hit_one(const char* pool, const KernelRay& ray, const Way& way, float t_max) {
   const DIW di;
   const BoxRay<Way::kSigned> box_ray(ray);
@@ -192,30 +204,31 @@ HWY_NOINLINE bool any_hit_one(const char* pool, const KernelRay& ray, const Way&
   while (true) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = box_ray.cross(node, limit);
-      const auto* children = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes);
+      const Slabs slabs = box_ray.template cross<Layout>(node, limit);
+      const std::int32_t* children = children_of<Layout>(node);
       unsigned bits = mask_bits(di, slabs.enters);
       if (bits != 0) {
-        current = children[__builtin_ctz(bits)];
-        for (bits &= bits - 1; bits; bits &= bits - 1) refs[++top] = children[__builtin_ctz(bits)];
+        const auto child = [&] { return static_cast<std::uint32_t>(children[__builtin_ctz(bits)]); };
+        current = child();
+        for (bits &= bits - 1; bits; bits &= bits - 1) refs[++top] = child();
         continue;
       }
     } else {
       if (current == kBottom) return false;
-      const TriangleBlock* block = block_at(pool, current);
-      for (std::uint32_t left = current >> 2 & 3; left > 0; --left, ++block) {
-        const Crossed crossed = test_edges(*block, ray);
-        HWY_ALIGN float ts[kBlockWidth];
-        if (crossed.maybe == 0) continue;
-        for (std::uint32_t lanes = test_planes(*block, ray, crossed, limit, ts); lanes; lanes &= lanes - 1)
-          if (way.admits(way.move(ts[__builtin_ctz(lanes)]))) return true;
-      }
+      const bool is_hit = visit_leaf<Layout>(
+          pool, current, ray, [&] { return limit; },
+          [&](const TriangleBlock&, std::uint32_t, std::uint32_t lanes, const float* ts) {
+            for (; lanes; lanes &= lanes - 1)
+              if (way.admits(way.move(ts[__builtin_ctz(lanes)]))) return true;
+            return false;
+          });
+      if (is_hit) return true;
     }
     current = refs[top--];
   }
 }
 
-template <class Way>
+template <class Layout, class Way>
 HWY_NOINLINE void all_hits_one(const char* pool, const KernelRay& ray, const Way& way, float t_max,
                                std::vector<TriangleHit>& hits) {
   const DIW di;
@@ -227,27 +240,23 @@ HWY_NOINLINE void all_hits_one(const char* pool, const KernelRay& ray, const Way
   for (std::uint32_t current = 0; current != kBottom; current = refs[top--]) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = box_ray.cross(node, limit);
-      const auto* children = reinterpret_cast<const std::uint32_t*>(node + 6 * kRowBytes);
+      const Slabs slabs = box_ray.template cross<Layout>(node, limit);
+      const std::int32_t* children = children_of<Layout>(node);
       for (std::uint32_t bits = mask_bits(di, slabs.enters); bits; bits &= bits - 1)
-        refs[++top] = children[__builtin_ctz(bits)];
+        refs[++top] = static_cast<std::uint32_t>(children[__builtin_ctz(bits)]);
       continue;
     }
-    const TriangleBlock* block = block_at(pool, current);
-    for (std::uint32_t left = current >> 2 & 3; left > 0; --left, ++block) {
-      const Crossed crossed = test_edges(*block, ray);
-      if (crossed.maybe == 0) continue;
-      HWY_ALIGN float ts[kBlockWidth];
-      for (std::uint32_t lanes = test_planes(*block, ray, crossed, limit, ts); lanes; lanes &= lanes - 1) {
-        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
-        if (lane > 0 && block->key[lane] == block->key[0]) continue;  // it only fills the block
-        const float t = way.move(ts[lane]);
-        if (!way.admits(t)) continue;
-        hits.push_back({t, block->key[lane],
-                        static_cast<std::uint32_t>((reinterpret_cast<const char*>(block) - pool) / 32),
-                        lane});
-      }
-    }
+    visit_leaf<Layout>(
+        pool, current, ray, [&] { return limit; },
+        [&](const TriangleBlock& block, std::uint32_t at, std::uint32_t lanes, const float* ts) {
+          for (; lanes; lanes &= lanes - 1) {
+            const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
+            if (is_padding(block.key, static_cast<int>(lane))) continue;
+            const float t = way.move(ts[lane]);
+            if (way.admits(t)) hits.push_back({t, block.key[lane], at, lane});
+          }
+          return false;
+        });
   }
 }
 

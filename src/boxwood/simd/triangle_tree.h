@@ -2,8 +2,10 @@
 //
 // A wide tree (tree/wide.h) and its triangles, in one pool of memory: first the nodes, then the blocks. A
 // reference counts in units of 32 bytes, so the address of what it names is two shifts away, and a reference
-// to a node is half of its offset. A block holds four triangles coordinate by coordinate, so that one vector
-// is the same coordinate of all four.
+// to a node is half of its offset. There are two layouts. In full, a block holds four triangles coordinate by
+// coordinate, so that one vector is the same coordinate of all four. The compact one takes half the memory:
+// nodes are quantized (tree/quantized.h), and a block says where its vertices are, in the meshes that a scene
+// keeps anyway.
 #pragma once
 
 #include <functional>
@@ -13,7 +15,7 @@
 #include "boxwood/shape/gate.h"
 #include "boxwood/shape/triangle.h"
 #include "boxwood/simd/huge_buffer.h"
-#include "boxwood/tree/wide.h"
+#include "boxwood/tree/quantized.h"
 
 namespace boxwood::simd {
 
@@ -31,24 +33,45 @@ static_assert(sizeof(TriangleBlock) == 160);
 /// A leaf test cannot overflow where no coordinate, and none less that of a ray's origin, is larger.
 inline constexpr float kLargestReach = 0x1p36f;
 
+enum class Layout { full, compact };
+
+/// Where a triangle's corners are.
+struct Corners {
+  const Vec3* vertices;
+  std::uint32_t index[3];
+
+  Triangle triangle() const { return {vertices[index[0]], vertices[index[1]], vertices[index[2]]}; }
+};
+
+struct alignas(32) CompactBlock {
+  const Vec3* vertices[kBlockWidth];
+  std::uint32_t index[3][kBlockWidth];  ///< Corner, lane.
+  std::uint32_t key[kBlockWidth];
+
+  Triangle triangle(std::uint32_t lane) const {
+    return Corners{vertices[lane], {index[0][lane], index[1][lane], index[2][lane]}}.triangle();
+  }
+};
+static_assert(sizeof(CompactBlock) == 96);
+
 class TriangleTree {
  public:
   static constexpr std::size_t kUnit = 32;
 
   TriangleTree() = default;
 
-  /// Fetches the triangles of a block: writes those of kBlockWidth slots. Called by several threads at once.
-  using Fetch = std::function<void(const PrimId* slots, Triangle* triangles)>;
+  /// Tells the corners of kBlockWidth slots. Called by several threads at once.
+  using Fetch = std::function<void(const PrimId* slots, Corners* corners)>;
 
-  /// Packs `wide`; its slots pick the triangles, and are their keys. The executor shows in the time only.
-  /// Throws std::length_error when the pool would be larger than 8 GB, or a walk needs more room than
-  /// kMaxWideStack.
+  /// Packs `wide`; its slots pick the triangles, and are their keys. A compact tree needs the vertices as
+  /// long as it lives. The executor shows in the time only. Throws std::length_error when the pool would be
+  /// larger than 8 GB, or a walk could need a larger stack than kMaxWideStack (wide.h).
   template <int W>
-  TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Executor& executor);
+  TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Layout layout, Executor& executor);
   /// The same for triangles in an array. No keys: each triangle's is its number.
   template <int W>
   TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> triangles,
-               std::span<const std::uint32_t> keys, Executor& executor);
+               std::span<const std::uint32_t> keys, Executor& executor, Layout layout = Layout::full);
 
   bool is_empty() const { return pool_.size() == 0; }
   /// Whether no float of a kernel can overflow among these triangles and ordinary rays.
@@ -72,45 +95,71 @@ class TriangleTree {
   template <int W>
   WideBvh<W> unpack() const;
 
+  Layout layout() const { return layout_; }
   const char* pool() const { return pool_.data(); }
   /// The bytes behind a reference of the pool.
   const char* at(ChildRef ref) const { return pool_.data() + std::size_t(ref.index()) * kUnit; }
-  /// The blocks of a leaf.
-  std::span<const TriangleBlock> blocks_of(ChildRef leaf) const {
-    return {reinterpret_cast<const TriangleBlock*>(at(leaf)), leaf.blocks()};
+  std::size_t block_bytes() const {
+    return layout_ == Layout::full ? sizeof(TriangleBlock) : sizeof(CompactBlock);
   }
-  /// The block that a hit names.
-  const TriangleBlock& block_at(std::uint32_t units) const {
-    return *reinterpret_cast<const TriangleBlock*>(pool_.data() + std::size_t(units) * kUnit);
+
+  /// The i-th of all blocks, and the i-th of a leaf. In a compact tree these are put together when asked for.
+  TriangleBlock block(std::size_t i) const {
+    return block_from(pool_.data() + blocks_at_ + i * block_bytes());
   }
-  /// All blocks, one behind the other.
-  std::span<const TriangleBlock> blocks() const {
-    return {reinterpret_cast<const TriangleBlock*>(pool_.data() + blocks_at_), block_count_};
+  TriangleBlock block_of(ChildRef leaf, std::size_t i) const {
+    return block_from(at(leaf) + i * block_bytes());
   }
-  /// A node, or all nodes, of a tree with W = width() children; references count in units.
+  /// A triangle of the block that a hit names; its key.
+  Triangle triangle(std::uint32_t block, std::uint32_t lane) const {
+    const char* p = pool_.data() + std::size_t(block) * kUnit;
+    return layout_ == Layout::full ? reinterpret_cast<const TriangleBlock*>(p)->triangle(lane)
+                                   : reinterpret_cast<const CompactBlock*>(p)->triangle(lane);
+  }
+  std::uint32_t key(std::uint32_t block, std::uint32_t lane) const {
+    const char* p = pool_.data() + std::size_t(block) * kUnit;
+    return layout_ == Layout::full ? reinterpret_cast<const TriangleBlock*>(p)->key[lane]
+                                   : reinterpret_cast<const CompactBlock*>(p)->key[lane];
+  }
+
+  /// A node of a tree with W = width() children; references count in units. For the layout that the name
+  /// says.
   template <int W>
-  const WideNode<W>& node_at(ChildRef node) const {
+  const WideNode<W>& full_node(ChildRef node) const {
     return *reinterpret_cast<const WideNode<W>*>(at(node));
   }
   template <int W>
-  std::span<const WideNode<W>> nodes() const {
-    return {reinterpret_cast<const WideNode<W>*>(pool_.data()), node_count_};
+  const QuantizedNode<W>& compact_node(ChildRef node) const {
+    return *reinterpret_cast<const QuantizedNode<W>*>(at(node));
   }
 
  private:
+  template <int W, class Node, class Block>
+  void pack(const WideBvh<W>& wide, const Fetch& fetch, Executor& executor);
+  template <int W>
+  std::size_t node_size() const {
+    return layout_ == Layout::full ? sizeof(WideNode<W>) : sizeof(QuantizedNode<W>);
+  }
+  TriangleBlock block_from(const char* p) const {
+    return layout_ == Layout::full ? *reinterpret_cast<const TriangleBlock*>(p)
+                                   : expand(*reinterpret_cast<const CompactBlock*>(p));
+  }
+  static TriangleBlock expand(const CompactBlock& compact);
+
   HugeBuffer pool_;
+  Layout layout_ = Layout::full;
   std::size_t blocks_at_ = 0, node_count_ = 0, block_count_ = 0;
   int width_ = 8, max_stack_ = 0;
   bool is_ordinary_ = true, has_parts_ = false;
   Box3 box_;
 };
 
-extern template TriangleTree::TriangleTree(const WideBvh<4>&, const Fetch&, Executor&);
-extern template TriangleTree::TriangleTree(const WideBvh<8>&, const Fetch&, Executor&);
+extern template TriangleTree::TriangleTree(const WideBvh<4>&, const Fetch&, Layout, Executor&);
+extern template TriangleTree::TriangleTree(const WideBvh<8>&, const Fetch&, Layout, Executor&);
 extern template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
-                                           std::span<const std::uint32_t>, Executor&);
+                                           std::span<const std::uint32_t>, Executor&, Layout);
 extern template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
-                                           std::span<const std::uint32_t>, Executor&);
+                                           std::span<const std::uint32_t>, Executor&, Layout);
 extern template WideBvh<4> TriangleTree::unpack() const;
 extern template WideBvh<8> TriangleTree::unpack() const;
 

@@ -27,9 +27,10 @@ std::string check(const TriangleTree& tree) {
   std::vector<Triangle> triangles(keys.size());
   std::vector<bool> is_known(keys.size(), false);
   std::vector<Box3> boxes(keys.size());
-  for (std::size_t b = 0; b < tree.block_count(); ++b)
+  for (std::size_t b = 0; b < tree.block_count(); ++b) {
+    const TriangleBlock block = tree.block(b);
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-      const Triangle triangle = tree.blocks()[b].triangle(lane);
+      const Triangle triangle = block.triangle(lane);
       const std::uint32_t i = wide.slots[b * kBlockWidth + lane].value;
       if (is_known[i] && !is_same(triangle, triangles[i]))
         return "lane " + std::to_string(lane) + " of block " + std::to_string(b) + " has key " +
@@ -38,6 +39,7 @@ std::string check(const TriangleTree& tree) {
       boxes[i] = triangle.box();
       is_known[i] = true;
     }
+  }
   return boxwood::validate(wide, boxes);
 }
 
