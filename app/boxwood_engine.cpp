@@ -81,12 +81,13 @@ class BoxwoodEngine final : public Engine {
  public:
   std::string name() const override { return "boxwood"; }
   std::vector<std::string> modes() const override { return {"single", "batch"}; }
-  std::vector<std::string> presets() const override { return {"fast", "balanced", "best"}; }
+  std::vector<std::string> presets() const override { return {"fast", "balanced", "best", "compact"}; }
   std::string traced_preset() const override { return "balanced"; }
   std::unique_ptr<BuiltScene> build(const TriangleMesh& mesh, const std::string& preset, int threads,
                                     const Progress& progress) const override {
     const std::unique_ptr<Executor> executor = make_executor(threads);
-    BuildOptions options = build_options(preset);
+    BuildOptions options = build_options(preset == "compact" ? "balanced" : preset);
+    options.is_compact = preset == "compact";
     options.executor = executor.get();
     options.progress = progress;
     SceneDesc desc;

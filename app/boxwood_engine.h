@@ -5,7 +5,8 @@
 
 namespace boxwood::app {
 
-/// Modes single (a call for each ray) and batch (spans of rays); presets fast, balanced and best.
+/// Modes single (a call for each ray) and batch (spans of rays); presets fast, balanced, best and
+/// compact (balanced, in the compact layout).
 std::unique_ptr<Engine> boxwood_engine();
 
 }  // namespace boxwood::app

@@ -152,6 +152,38 @@ TEST_P(KernelScenes, AnswerUnusualRaysAsIfTheyHadNoTrees) {
   EXPECT_GT(check_all(scene, mixed_rays(scene.bounds(), 200, 2), true), 20u);
 }
 
+TEST_P(KernelScenes, CompactScenesAnswerTheSame) {
+  const SceneDesc desc = gallery::make(GetParam());
+  BuildOptions options = BuildOptions::balanced();
+  options.is_compact = true;
+  const Scene compact(desc, options), full(desc);
+  EXPECT_EQ(simd::validate(compact.parts().world.triangles), "");
+  const std::vector<Ray> rays = mixed_rays(full.bounds(), 1'000, 3);
+  EXPECT_GT(check_all(compact, rays, false), 100u);
+  Random random(4);
+  const bool has_closest_points = full.parts().closest_point_obstacle.empty();
+  for (const Ray& ray : rays) {
+    EXPECT_EQ(compact.closest_hit(ray), full.closest_hit(ray));
+    if (!has_closest_points || HasFailure()) continue;
+    const Vec3 point = random.in_box(full.bounds().lower, full.bounds().upper);
+    const ScenePoint a = compact.closest_point(point), b = full.closest_point(point);
+    EXPECT_EQ(a.distance, b.distance);
+    EXPECT_EQ(a.primitive_id, b.primitive_id);
+  }
+}
+
+TEST(KernelScene, CompactScenesTakeHalfTheMemory) {
+  const SceneDesc desc = gallery::make("terrain:128");
+  BuildOptions options = BuildOptions::balanced();
+  const auto bytes_per_triangle = [&](bool is_compact) {
+    options.is_compact = is_compact;
+    const SceneStatistics statistics = Scene(desc, options).statistics();
+    return double(statistics.tree_bytes + statistics.geometry_bytes) / double(statistics.primitives);
+  };
+  EXPECT_LT(bytes_per_triangle(false), 65);
+  EXPECT_LT(bytes_per_triangle(true), 40);
+}
+
 TEST_P(KernelScenes, HoldValidTreesAndNothingTwice) {
   const Scene scene(gallery::make(GetParam()));
   const Part& world = scene.parts().world;
