@@ -2,7 +2,7 @@
 //
 // Included once for each instruction set, in a namespace of its own; no include guard.
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(__clang__)  // clang 14 refuses eight lanes where there is no AVX
 struct Eight {
   using Floats = float __attribute__((vector_size(32)));
   using Bits = std::int32_t __attribute__((vector_size(32)));

@@ -121,6 +121,10 @@ float Lights::sum_of_importances(const Receiver& from) const {
 std::optional<LightSample> Lights::sample(const Surface& surface, Vec3 facing_normal, float choice,
                                           Vec2 u) const {
   const Receiver from{surface.position, facing_normal};
+  if (far_lights_.empty()) {
+    const std::optional<LightTree::Choice> chosen = tree_.choose(from, choice);
+    return chosen ? sample_near(near_lights_[chosen->light], surface, chosen->probability, u) : std::nullopt;
+  }
   const float sum = sum_of_importances(from);
   if (!(sum > 0) || !(sum < kInfinity)) return std::nullopt;
 
@@ -238,10 +242,13 @@ float Lights::pdf(const Hit& hit, const Surface& surface, Vec3 direction, const 
   if (group == kNoGroup) return 0;
   const float cosine = std::fabs(dot(surface.normal, direction));
   const std::optional<std::uint32_t> emitter = groups_[group].find(hit.primitive_id, hit.part);
-  const float sum = sum_of_importances(from);
-  if (!(cosine > 0) || !emitter || !(sum > 0) || !(sum < kInfinity)) return 0;
-  const float probability =
-      tree_.probability(first_of_group_[group] + *emitter, from) * tree_.importance(from) / sum;
+  if (!(cosine > 0) || !emitter) return 0;
+  float probability = tree_.probability(first_of_group_[group] + *emitter, from);
+  if (!far_lights_.empty()) {
+    const float sum = sum_of_importances(from);
+    if (!(sum > 0) || !(sum < kInfinity)) return 0;
+    probability *= tree_.importance(from) / sum;
+  }
   return probability * groups_[group].pdf_area(*emitter, surface.position, from.position) *
          length_squared(surface.position - from.position) / cosine;
 }

@@ -15,6 +15,9 @@ namespace {
 // Bounds for light that is caught in glass, and for rays that pass through clear surfaces one behind the
 // other; roulette ends other paths long before.
 constexpr int kMaxBounces = 64, kMaxSteps = 1024;
+/// How many hits ahead the corners of triangles are asked for; memory answers meanwhile.
+constexpr std::size_t kAhead = 4;
+
 constexpr int kRouletteAfter = 3;  // bounces; early ones carry most of the picture
 constexpr float kMaxSurvival = 0.95f;
 
@@ -94,8 +97,11 @@ class PathTracer final : public Integrator {
       // Let each go on from there; those at their end leave a gap.
       batch.pending.clear();
       batch.ways.clear();
-      for (std::size_t i = 0; i < paths.size(); ++i)
+      for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (i + 2 * kAhead < paths.size()) prefetch_triangle(scene_, batch.hits[i + 2 * kAhead]);
+        if (i + kAhead < paths.size()) prefetch_corners(scene_, batch.hits[i + kAhead]);
         batch.goes_on[i] = advance(paths[i], batch.hits[i], static_cast<std::uint32_t>(i), batch);
+      }
 
       // Find which of the lights that they asked for are in sight.
       batch.rays.clear();

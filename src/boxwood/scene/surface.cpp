@@ -127,6 +127,35 @@ Vec3 spread(const Affine3& m, Vec3 v) {
 
 }  // namespace
 
+namespace {
+
+void prefetch([[maybe_unused]] const void* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#endif
+}
+
+const TriangleMesh* mesh_of(const Scene& scene, const Hit& hit) {
+  if (!hit) return nullptr;
+  return std::get_if<TriangleMesh>(&scene.parts().desc.geometries[hit.geometry_id.value].shapes);
+}
+
+}  // namespace
+
+void prefetch_triangle(const Scene& scene, const Hit& hit) {
+  if (const TriangleMesh* mesh = mesh_of(scene, hit)) prefetch(&mesh->indices[hit.primitive_id.value]);
+}
+
+void prefetch_corners(const Scene& scene, const Hit& hit) {
+  const TriangleMesh* mesh = mesh_of(scene, hit);
+  if (mesh == nullptr) return;
+  for (const std::uint32_t vertex : mesh->indices[hit.primitive_id.value]) {
+    prefetch(&mesh->positions[vertex]);
+    if (!mesh->normals.empty()) prefetch(&mesh->normals[vertex]);
+    if (!mesh->uvs.empty()) prefetch(&mesh->uvs[vertex]);
+  }
+}
+
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   const Scene::Parts& parts = scene.parts();
   const Geometry& geometry = parts.desc.geometries[hit.geometry_id.value];
