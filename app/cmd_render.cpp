@@ -9,6 +9,7 @@
 #include "boxwood/core/error.h"
 #include "boxwood/io/file_bytes.h"
 #include "boxwood/io/image.h"
+#include "boxwood/render/light.h"
 #include "boxwood/render/shard.h"
 #include "boxwood/scene/scene.h"
 #include "checkpoint_file.h"
@@ -33,6 +34,9 @@ Scene open_and_build(const RenderArguments& arguments, render::RenderOptions& op
   SceneDesc desc = open_scene(arguments.scene, *options.executor);
   bar.clear();
   print_warnings(desc);
+  // Formats of bare geometry have no lights; scenes are meant to have some.
+  if (io::lower_extension(arguments.scene) == ".pbrt" && !render::has_light(desc))
+    print_error("boxwood: warning: there is no light in {}; a plain sky stands in\n", arguments.scene);
   if (is_interrupted()) throw Cancelled();
 
   if (arguments.size.empty()) {

@@ -251,7 +251,9 @@ TEST(Path, ASceneWithoutLightIsShownUnderThePlainSky) {
   EXPECT_GT(min_component(lit), 0.1f);
   EXPECT_LT(max_component(lit), 1.0f);
 
+  EXPECT_FALSE(has_light(desc));
   desc.point_lights.push_back({{0, 100, 0}, splat(1)});
+  EXPECT_TRUE(has_light(desc));
   const Scene dark(desc);
   EXPECT_EQ(mean_radiance(dark, Ray{{0, 0, 5}, 0, {1, 0, 0}}, 4), Vec3{});
 }

@@ -10,14 +10,6 @@ namespace {
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
 
-/// Whether a scene has any light of its own.
-bool is_lit(const SceneDesc& desc) {
-  if (desc.sky || !desc.point_lights.empty() || !desc.spot_lights.empty() || !desc.distant_lights.empty() ||
-      !desc.environments.empty())
-    return true;
-  return std::any_of(desc.materials.begin(), desc.materials.end(), is_emissive);
-}
-
 /// A spot light's share of its intensity at an angle from the axis: none outside, smooth in between.
 float spot_falloff(const SpotLight& light, float cosine) {
   if (cosine >= light.inner_cosine) return 1;
@@ -36,9 +28,16 @@ Ray ray_to_point(const Surface& surface, Vec3 direction, Vec3 point) {
 
 }  // namespace
 
+bool has_light(const SceneDesc& desc) {
+  if (desc.sky || !desc.point_lights.empty() || !desc.spot_lights.empty() || !desc.distant_lights.empty() ||
+      !desc.environments.empty())
+    return true;
+  return std::any_of(desc.materials.begin(), desc.materials.end(), is_emissive);
+}
+
 Lights::Lights(const Scene& scene, const Camera& camera) : scene_(scene) {
   const SceneDesc& desc = scene.description();
-  sky_ = is_lit(desc) ? desc.sky : plain_sky(camera);
+  sky_ = has_light(desc) ? desc.sky : plain_sky(camera);
   if (sky_) sun_ = sun_of(*sky_);
 
   // Lights from far away.

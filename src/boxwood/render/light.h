@@ -31,6 +31,9 @@ struct LightSample {
   Ray shadow_ray;           ///< Hits nothing when the light is in sight.
 };
 
+/// Whether a scene has any light of its own.
+bool has_light(const SceneDesc& desc);
+
 class Lights {
  public:
   /// Collects every light of the scene; without any it adds the plain sky. Keeps a reference to `scene`.
