@@ -173,8 +173,17 @@ void Rows::read_as(std::size_t begin, std::size_t count, Out* out, std::size_t s
     for (std::size_t rest = begin, i = leading_.size(); i-- > 0; rest /= leading_[i].size)
       from += static_cast<std::ptrdiff_t>(rest % leading_[i].size) * leading_[i].stride;
 
-    if (row_.empty()) {
+    if (row_.empty() && last.stride == 0) {
+      const Out number = load(from);
+      for (std::size_t i = 0; i < run; ++i) out[i * stride] = number;
+    } else if (row_.empty()) {
       for (std::size_t i = 0; i < run; ++i, from += last.stride) out[i * stride] = load(from);
+    } else if (row_.size() == 1 && row_[0].size == 3 && row_[0].stride == sizeof(T)) {
+      for (std::size_t i = 0; i < run; ++i, from += last.stride) {
+        out[i * stride] = load(from);
+        out[i * stride + 1] = load(from + sizeof(T));
+        out[i * stride + 2] = load(from + 2 * sizeof(T));
+      }
     } else if (row_.size() == 1 && row_[0].size == 3) {
       const std::ptrdiff_t step = row_[0].stride;
       for (std::size_t i = 0; i < run; ++i, from += last.stride)
