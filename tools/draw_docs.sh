@@ -21,3 +21,11 @@ if [ -n "${BOXWOOD_MODELS:-}" ]; then
   "$program" render "$BOXWOOD_MODELS/kitchen/scene.pbrt" -o "$out/kitchen.png" --size 853x480 --samples 256
 fi
 "$program" ladder --plot "$out/ladder.svg"
+
+# The pictures of docs/python.md, by the wheel that `make test-python` has installed.
+if [ -x build/python/venv/bin/python ]; then
+  mkdir -p docs/images/python
+  for script in ambient_occlusion lidar depth_camera sun_hours thickness deviation; do
+    build/python/venv/bin/python "python/examples/$script.py" -o "docs/images/python/$script.jpg"
+  done
+fi
