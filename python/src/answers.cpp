@@ -8,6 +8,7 @@
 #include <nanobind/stl/string.h>
 
 #include "docstrings.h"
+#include "running.h"
 
 namespace boxwood::python {
 namespace {
@@ -289,7 +290,7 @@ void bind_answers(nb::module_& module) {
           "Of the rays.")
       .def(
           "spawn",
-          [](const Surfaces& s, nb::handle directions) {
+          [](const Surfaces& s, nb::handle directions, int threads) {
             // Every place may send out several rays: (k, 3) places and (n, k, 3) directions.
             Rows rows("directions", directions, {3});
             if (rows.shape().size() < s.shape.size() ||
@@ -302,15 +303,20 @@ void bind_answers(nb::module_& module) {
             layout.add<float>(3 * count);
             const Block block = layout.allocate();
             float* const origins = reinterpret_cast<float*>(block->data());
-            for (std::size_t i = 0; i < count; ++i) {
-              float direction[3];
-              rows.read(i, 1, direction, 3);
-              put(origins + 3 * i, s.read(i % places).spawn(vec(direction)).origin);
-            }
+            run_stream(count, threads, [&](const Stream& stream) {
+              constexpr std::size_t kGrain = 4096;
+              stream.executor->for_range(0, count, kGrain, [&](std::size_t begin, std::size_t end) {
+                std::vector<float> towards(3 * (end - begin));
+                rows.read(begin, end - begin, towards.data(), 3);
+                for (std::size_t i = begin; i < end; ++i)
+                  put(origins + 3 * i, s.read(i % places).spawn(vec(&towards[3 * (i - begin)])).origin);
+              });
+            });
             return make_array(block, origins, rows.shape(), 3);
           },
-          nb::arg("directions").none(),
-          sig("def spawn(self, directions: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float32]"),
+          nb::arg("directions").none(), nb::kw_only(), nb::arg("threads") = 0,
+          sig("def spawn(self, directions: numpy.typing.ArrayLike, *, threads: int = 0) -> "
+              "numpy.typing.NDArray[numpy.float32]"),
           (std::string(doc::Surface_spawn) +
            "\n\nReturns the origins of these rays, of the shape of `directions`, which ends with that of the "
            "surfaces:\n(n, k, 3) sends n rays from each of k places.")

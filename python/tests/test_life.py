@@ -251,6 +251,7 @@ def test_next_rays_start_beyond_the_surface(sphere, scene, rng):
     outward = rng.normal(size=(4, 2000, 3))
     outward *= np.sign(np.sum(outward * hits.normal, -1, keepdims=True))
     starts = surfaces.spawn(outward)
+    np.testing.assert_array_equal(surfaces.spawn(outward, threads=1), starts)
     assert starts.shape == (4, 2000, 3)
     assert not scene.any_hit(starts, outward).any()  # a convex body: nothing is hit from outside
     inward = scene.closest_hit(surfaces.spawn(-outward), -outward)

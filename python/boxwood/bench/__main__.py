@@ -135,19 +135,22 @@ def main(arguments=None):
     parser.add_argument("--threads", type=int, nargs="+", default=[1, os.cpu_count() or 1], metavar="N")
     parser.add_argument("--questions", nargs="+", choices=peers.QUESTIONS, default=peers.QUESTIONS, metavar="QUESTION",
                         help='of "closest hit", "any hit", "all hits", "closest point"')
+    parser.add_argument("--peers", nargs="*", metavar="NAME", help="of embreex, trimesh, open3d; otherwise all that are installed")
     parser.add_argument("--rounds", type=int, default=5, metavar="N", help="medians of so many [5]")
     parser.add_argument("--patience", type=float, default=20, metavar="SECONDS", help="skip calls that take longer [20]")
     parser.add_argument("--json", metavar="FILE", help="write the figures")
     parser.add_argument("--plot", metavar="FILE", help="draw them (.svg, .png); needs matplotlib")
     options = parser.parse_args(arguments)
 
-    found = peers.installed()
+    found = [peer for peer in peers.installed() if options.peers is None or peer.name in options.peers]
     names = ["boxwood", "C++", *(peer.name for peer in found)]
     print(f"boxwood {__version__} on {cpu_target()}, million rays a second; beside: {', '.join(names[1:])}")
     rows = []
     for name in options.scenes or scenes.default_names():
         vertices, triangles = scenes.as_mesh(name)
         engines = [make(vertices, triangles) for make in (peers.Boxwood, *found)]
+        for engine in engines:  # some build their trees when they are first asked
+            engine.closest_hit(engine.prepare("closest hit", *scenes.random_rays(vertices, 10)), 1)
         print(f"\n{scenes.short_name(name)}: {len(triangles)} triangles", flush=True)
         for question in options.questions:
             for threads in dict.fromkeys(options.threads):
