@@ -281,7 +281,8 @@ SceneDesc desc_of(const nb::tuple& state) {
 
 nb::tuple state_of(const BuildOptions& o) {
   return nb::make_tuple(static_cast<int>(o.method), o.max_depth, o.leaf_size, o.block_size, o.bins,
-                        o.traversal_cost, o.reinsertion_rounds, o.reinsertion_share, o.split_share);
+                        o.traversal_cost, o.reinsertion_rounds, o.reinsertion_share, o.split_share,
+                        o.is_compact);
 }
 
 BuildOptions options_of(const nb::tuple& state) {
@@ -295,6 +296,7 @@ BuildOptions options_of(const nb::tuple& state) {
   o.reinsertion_rounds = nb::cast<int>(state[6]);
   o.reinsertion_share = nb::cast<float>(state[7]);
   o.split_share = nb::cast<float>(state[8]);
+  o.is_compact = nb::cast<bool>(state[9]);
   return o;
 }
 
@@ -318,6 +320,7 @@ void bind_description(nb::module_& module) {
       .def_rw("reinsertion_rounds", &BuildOptions::reinsertion_rounds, doc::BuildOptions_reinsertion_rounds)
       .def_rw("reinsertion_share", &BuildOptions::reinsertion_share, "The share of all nodes, 0 to 1.")
       .def_rw("split_share", &BuildOptions::split_share, doc::BuildOptions_split_share)
+      .def_rw("is_compact", &BuildOptions::is_compact, doc::BuildOptions_is_compact)
       .def_static("fast", &BuildOptions::fast, doc::BuildOptions_fast)
       .def_static("balanced", &BuildOptions::balanced, doc::BuildOptions_balanced)
       .def_static("best", &BuildOptions::best, doc::BuildOptions_best)
@@ -327,7 +330,7 @@ void bind_description(nb::module_& module) {
         constexpr const char* kNames[] = {"longest_axis", "binned_sah", "sweep_sah", "ploc"};
         return std::string("<boxwood.BuildOptions: ") + kNames[static_cast<int>(o.method)] + ", leaves of " +
                std::to_string(o.leaf_size) + ", " + counted(o.reinsertion_rounds, "round", "rounds") +
-               " of reinsertion, split_share " + number(o.split_share) + ">";
+               " of reinsertion, split_share " + number(o.split_share) + (o.is_compact ? ", compact>" : ">");
       });
 
   nb::class_<Camera>(module, "Camera", doc::Camera)

@@ -54,7 +54,7 @@ def same(a, b, rays):
 
 @pytest.mark.parametrize("again", [lambda x: pickle.loads(pickle.dumps(x)), copy.copy, copy.deepcopy])
 def test_scenes_pickle(mixed, scene, rays, again):
-    for one in (bw.Scene(mixed), scene, bw.Scene(mixed, bw.BuildOptions.fast())):
+    for one in (bw.Scene(mixed), scene, bw.Scene(mixed, bw.BuildOptions.fast()), bw.Scene(mixed, compact())):
         other = again(one)
         assert repr(other) == repr(one) and same(one, other, rays)
         assert repr(other.options) == repr(one.options)
@@ -97,7 +97,13 @@ def test_instances_and_meshes_can_be_read(mixed):
         bw.Scene(mixed).instance(5)
 
 
-@pytest.mark.parametrize("options", [bw.BuildOptions.fast(), bw.BuildOptions.best()])
+def compact():
+    options = bw.BuildOptions.balanced()
+    options.is_compact = True
+    return options
+
+
+@pytest.mark.parametrize("options", [bw.BuildOptions.fast(), bw.BuildOptions.best(), compact()])
 def test_answers_do_not_depend_on_builder_or_threads(sphere, scene, rays, options):
     for threads in (0, 1, 2):
         other = bw.Scene.from_mesh(*sphere, options=options, threads=threads)
