@@ -86,7 +86,8 @@ double number_of(const Tokenizer& tokenizer, const Token& token) {
 
 Parameter read_parameter(Tokenizer& tokenizer, Token& token) {
   const Place place = tokenizer.place(token);
-  const auto [type_name, name] = split_declaration(token.text);
+  const std::array<std::string_view, 2> words = split_declaration(token.text);
+  const std::string_view type_name = words[0], name = words[1];
   if (type_name.empty() || name.empty())
     fail(place,
          in_quotes(token.text) + " is not a parameter, expected a type and a name such as \"float fov\"");
