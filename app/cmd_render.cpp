@@ -149,6 +149,7 @@ void render_command(const RenderArguments& arguments) {
   std::optional<RenderWatch> watch;
   options.progress = [&watch](const render::RenderStatus& status) { return watch->update(status); };
   render::RenderJob job(scene, options);
+  bar.clear();
   const CheckpointFile checkpoint(arguments.outputs.front());
   resume(arguments, checkpoint, job);
   const std::uint64_t rays_before = job.state().rays;

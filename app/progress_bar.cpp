@@ -41,6 +41,7 @@ void ProgressBar::update(std::string_view stage, double done, std::string_view d
   if (stage != stage_) {
     stage_ = stage;
     stage_start_ = last_shown_ = now;
+    done_at_start_ = done;
     if (style_ == Style::lines) return;
   } else if (seconds_since(last_shown_) < (style_ == Style::bar ? kBarInterval : kLineInterval)) {
     return;
@@ -51,8 +52,9 @@ void ProgressBar::update(std::string_view stage, double done, std::string_view d
   const double elapsed = seconds_since(stage_start_);
   std::string tail = fmt::format("{:3.0f}%", std::floor(100 * done));
   if (!detail.empty()) tail += fmt::format("  {}", detail);
-  if (elapsed > kSureAfter && done > 0)
-    tail += fmt::format("  {} left", format_duration(elapsed / done * (1 - done)));
+  const double newly_done = done - done_at_start_;
+  if (elapsed > kSureAfter && newly_done > 0)
+    tail += fmt::format("  {} left", format_duration(elapsed / newly_done * (1 - done)));
 
   if (style_ == Style::lines) {
     print_error("{} {}\n", stage_, tail);

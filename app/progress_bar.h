@@ -31,6 +31,7 @@ class ProgressBar {
   Style style_;
   std::string stage_;
   Clock::time_point stage_start_, last_shown_;
+  double done_at_start_ = 0;  // of the stage; work that is gone on with begins in the middle
   bool is_drawn_ = false;
 };
 

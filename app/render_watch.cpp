@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kFirstPreview = 1, kPreviewInterval = 4;  // seconds
 
-/// "12.5/64 samples", with a fraction only where it says something.
-std::string samples_text(double samples, int limit) {
+/// "7.5", "12": with a fraction only where it says something.
+std::string samples_text(double samples) {
   const bool is_whole = samples >= 10 || samples == std::floor(samples);
-  return fmt::format("{:.{}f}/{} samples", samples, is_whole ? 0 : 1, limit);
+  return fmt::format("{:.{}f}", samples, is_whole ? 0 : 1);
 }
 
 }  // namespace
@@ -34,9 +34,14 @@ RenderWatch::RenderWatch(const render::RenderJob& job, ProgressBar& bar, const C
 bool RenderWatch::update(const render::RenderStatus& status) {
   const double time = elapsed();
   const double mrays_per_s = static_cast<double>(status.rays - rays_before_) * 1e-6 / std::max(time, 1e-9);
-  const auto [index, count] = job_.options().shard;
-  std::string detail = samples_text(status.samples, job_.options().samples / count);
+  // What decides when it ends is shown beside its goal.
+  const render::RenderOptions& asked = job_.options();
+  std::string detail = samples_text(status.samples);
+  if (asked.noise == 0 && options_.seconds == 0)
+    detail += fmt::format("/{}", asked.samples / asked.shard.count);
+  detail += " samples";
   if (status.noise) detail += fmt::format("  noise {:.3g}", *status.noise);
+  if (status.noise && asked.noise > 0) detail += fmt::format("/{:.3g}", asked.noise);
   detail += fmt::format("  {:.2f} Mrays/s", mrays_per_s);
   // Whichever ends first: the samples or the time.
   const double time_done = options_.seconds > 0 ? std::min(1.0, time / options_.seconds) : 0;

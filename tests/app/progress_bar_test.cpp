@@ -1,8 +1,11 @@
 // The bar as a terminal gets it.
 #include "progress_bar.h"
 
+#include <chrono>
 #include <cstdio>
+#include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,7 +18,7 @@ namespace {
 const std::string kStartOfLine = "\r\033[K";  // go there, and clear what the line held
 
 /// What a terminal of so many columns is told to show on its line, one text after another.
-std::vector<std::string> shown_on(unsigned short columns) {
+std::vector<std::string> shown_on(unsigned short columns, const std::function<void(ProgressBar&)>& work) {
   winsize size{};
   size.ws_row = 24;
   size.ws_col = columns;
@@ -25,7 +28,7 @@ std::vector<std::string> shown_on(unsigned short columns) {
   dup2(program, STDERR_FILENO);
   {
     ProgressBar bar(false);
-    bar.update("rendering", 0.5, "0.54 Mrays/s");
+    work(bar);
   }
   dup2(stderr_before, STDERR_FILENO);
   close(stderr_before);
@@ -47,8 +50,25 @@ std::vector<std::string> shown_on(unsigned short columns) {
   return lines;
 }
 
+void half_done(ProgressBar& bar) {
+  bar.update("rendering", 0.5, "0.54 Mrays/s");
+}
+
+TEST(ProgressBar, ForecastsFromWhereTheWorkWasGoneOnWith) {
+  // A hundredth took half a second at least, and nine more are left.
+  const std::vector<std::string> lines = shown_on(80, [](ProgressBar& bar) {
+    bar.update("rendering", 0.90);
+    std::this_thread::sleep_for(std::chrono::milliseconds(510));
+    bar.update("rendering", 0.91);
+  });
+  ASSERT_EQ(lines.size(), 3u);
+  const std::size_t at = lines[1].find("91%  ");
+  ASSERT_NE(at, std::string::npos) << lines[1];
+  EXPECT_GE(std::stoi(lines[1].substr(at + 5)), 5) << lines[1];
+}
+
 TEST(ProgressBar, ShowsABarAndRemovesIt) {
-  const std::vector<std::string> lines = shown_on(80);
+  const std::vector<std::string> lines = shown_on(80, half_done);
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0], "rendering [" + std::string(20, '#') + std::string(20, '.') + "]  50%  0.54 Mrays/s");
   EXPECT_EQ(lines[1], "");
@@ -56,7 +76,7 @@ TEST(ProgressBar, ShowsABarAndRemovesIt) {
 
 TEST(ProgressBar, NeverWrapsTheLine) {
   for (const unsigned short columns : {1, 10, 20, 30, 40, 50}) {
-    const std::vector<std::string> lines = shown_on(columns);
+    const std::vector<std::string> lines = shown_on(columns, half_done);
     ASSERT_EQ(lines.size(), 2u) << columns;
     EXPECT_LT(lines[0].size(), columns);
     EXPECT_EQ(lines[0].substr(0, 9), std::string("rendering").substr(0, columns - 1u));

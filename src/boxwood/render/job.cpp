@@ -234,7 +234,9 @@ void RenderJob::report() {
   RenderStatus status;
   status.rays = rays_;
   status.samples = static_cast<double>(samples_) / (double(options_.width) * options_.height);
-  status.done = std::min(1.0, static_cast<double>(samples_) / std::max(1.0, samples_expected_));
+  // How long a noise takes cannot be known before there is a measure of it.
+  if (options_.noise == 0 || noise_)
+    status.done = std::min(1.0, static_cast<double>(samples_) / std::max(1.0, samples_expected_));
   status.noise = noise_;
   status.is_whole = round_.begin > first_sample_;
   if (!options_.progress(status)) is_stopped_ = true;

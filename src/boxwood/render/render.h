@@ -30,9 +30,10 @@ enum class Mode {
 
 /// How far a render is.
 struct RenderStatus {
-  double done = 0;         ///< The share of all samples, in [0, 1]; a forecast when there is a noise target.
-  std::uint64_t rays = 0;  ///< Traced so far, of every kind.
-  double samples = 0;      ///< Of each pixel so far, on average.
+  double done = 0;              ///< The share of all samples, in [0, 1]; a forecast when there is a noise
+                                ///< target, and 0 before there can be one.
+  std::uint64_t rays = 0;       ///< Traced so far, of every kind.
+  double samples = 0;           ///< Of each pixel so far, on average.
   std::optional<double> noise;  ///< As of the last round (noise.h); nothing before there are enough samples.
   bool is_whole = false;        ///< Every pixel has a sample.
 };
