@@ -4,7 +4,7 @@
 
 PROGRAM := build/release/boxwood
 
-.PHONY: help setup build demo test wheel test-python test-arm check fuzz bench microbench format docs clean
+.PHONY: help setup build demo test wheel test-python test-arm test-wasm check fuzz bench microbench format docs clean
 .DEFAULT_GOAL := help
 
 help:    ## This list.
@@ -35,6 +35,9 @@ test-python: setup  ## Build the wheel, install it into a clean virtual environm
 
 test-arm:  ## Build the kernels and their tests for 64-bit ARM, and run them under QEMU.
 	tools/test_arm.sh
+
+test-wasm: ## Build the kernels and their tests for WebAssembly, and run them under Node.js.
+	tools/test_wasm.sh
 
 check: setup  ## What a change must pass before it is shared: format, warnings as errors, the sanitizers.
 	@tools/setup.sh clang-format clang-14 libclang-rt-14-dev

@@ -13,8 +13,12 @@ macro(boxwood_require name package)
   endif()
 endmacro()
 
-boxwood_require(TBB libtbb-dev)
-boxwood_require(hwy libhwy-dev CONFIG)
+if(EMSCRIPTEN)
+  include(${CMAKE_CURRENT_LIST_DIR}/wasm.cmake)
+else()
+  boxwood_require(TBB libtbb-dev)
+  boxwood_require(hwy libhwy-dev CONFIG)
+endif()
 
 if(BOXWOOD_BUILD_APP OR BOXWOOD_BUILD_PYTHON)
   boxwood_require(tinyobjloader libtinyobjloader-dev)
@@ -35,7 +39,9 @@ if(BOXWOOD_BUILD_APP OR BOXWOOD_BUILD_TESTS)
   find_package(embree 3 QUIET)     # only a peer to measure against and to compare with; absent is fine
 endif()
 if(BOXWOOD_BUILD_TESTS)
-  boxwood_require(GTest libgtest-dev)
+  if(NOT EMSCRIPTEN)
+    boxwood_require(GTest libgtest-dev)
+  endif()
   find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter)  # the checks of layers, snippets and outputs
   find_package(benchmark QUIET)    # only for make microbench
 endif()

@@ -8,17 +8,19 @@
 #include <string>
 #include <thread>
 
+#if !defined(__EMSCRIPTEN__)
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
+#endif
 
 namespace boxwood {
 namespace {
 
-class SerialExecutor final : public Executor {
+class SerialExecutor : public Executor {
  public:
   int concurrency() const override { return 1; }
   void for_range(std::size_t begin, std::size_t end, std::size_t grain, const Range& body) override {
@@ -34,7 +36,15 @@ class SerialExecutor final : public Executor {
   }
 };
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(__EMSCRIPTEN__)
+
+/// A web page has one thread, and no oneTBB.
+class ParallelExecutor final : public SerialExecutor {
+ public:
+  explicit ParallelExecutor(int) {}
+};
+
+#elif defined(__SANITIZE_THREAD__)
 
 /// Plain threads in place of oneTBB's under the thread sanitizer, which cannot follow a oneTBB that is not
 /// built with it (Debian's is not), and would report every task. With these it sees each fork and each join,

@@ -72,6 +72,7 @@ HWY_INLINE Weights weigh(VF (&v)[3][3], VF (&origin)[3], VF (&direction)[3]) {
 }
 
 /// The normals of the triangles with the vertices `v`.
+#if HWY_HAVE_FLOAT64
 HWY_INLINE void find_normals(const VF (&v)[3][3], VF (&normal)[3]) {
   const hn::FixedTag<double, kFinished / 2> d;
   const hn::FixedTag<float, kFinished / 2> half;
@@ -97,6 +98,19 @@ HWY_INLINE void find_normals(const VF (&v)[3][3], VF (&normal)[3]) {
   of([&](int i, int k) { return hn::PromoteTo(d, hn::UpperHalf(half, v[i][k])); }, upper);
   for (int k = 0; k < 3; ++k) normal[k] = hn::Combine(DF(), upper[k], lower[k]);
 }
+#else  // Highway has no vectors of doubles here: one by one.
+HWY_INLINE void find_normals(const VF (&v)[3][3], VF (&normal)[3]) {
+  HWY_ALIGN float at[3][3][kFinished], found[3][kFinished];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) hn::Store(v[i][k], DF(), at[i][k]);
+  for (std::size_t n = 0; n < kFinished; ++n) {
+    const auto vertex = [&](int i) { return Vec3{at[i][0][n], at[i][1][n], at[i][2][n]}; };
+    const Vec3 unit = Triangle{vertex(0), vertex(1), vertex(2)}.normal();
+    for (int k = 0; k < 3; ++k) found[k][n] = unit[k];
+  }
+  for (int k = 0; k < 3; ++k) normal[k] = hn::Load(DF(), found[k]);
+}
+#endif
 
 /// Fetches the vertices of kFinished hits, found[ray_index[i]].
 template <class Layout>
@@ -114,7 +128,8 @@ struct VertexFetch<FullLayout> {
     const VIF block = hn::GatherIndex(di, words + 2, at), lane = hn::GatherIndex(di, words + 3, at);
     const VIF vertex_at = hn::Add(
         hn::Xor(hn::ShiftLeft<3>(block), hn::Set(di, std::numeric_limits<std::int32_t>::min())), lane);
-    const std::uintptr_t middle = reinterpret_cast<std::uintptr_t>(tree.pool()) + (std::uintptr_t(1) << 33);
+    const std::uintptr_t middle =
+        reinterpret_cast<std::uintptr_t>(tree.pool()) + static_cast<std::uintptr_t>(std::uint64_t(1) << 33);
     for (unsigned i = 0; i < 3; ++i)
       for (unsigned k = 0; k < 3; ++k)
         v[i][k] = hn::GatherIndex(d, reinterpret_cast<const float*>(middle + 48 * i + 16 * k), vertex_at);

@@ -152,7 +152,11 @@ namespace boxwood::simd {
 std::span<const Kernels* const> available_kernels() {
   // Asked by name, and not by Highway's own dispatch, whose choice belongs to the whole program.
   static const std::vector<const Kernels*> all = [] {
+#if HWY_ARCH_WASM
+    const std::int64_t supported = HWY_WASM;  // or the module would not have been loaded
+#else
     const std::int64_t supported = hwy::SupportedTargets();
+#endif
     std::vector<const Kernels*> found;
     const auto add = [&](std::int64_t target, const Kernels* kernels) {
       if (supported & target) found.push_back(kernels);

@@ -95,7 +95,7 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Layout la
   // Blocks begin at a multiple of a line.
   blocks_at_ = node_count_ * node_size<W>();
   const std::size_t size = blocks_at_ + block_count_ * block_bytes();
-  if (size >= kUnit << 28)
+  if (size >= std::uint64_t(kUnit) << 28)
     throw std::length_error("the tree and its triangles need more than 8 GB, which 28 bits cannot address");
   pool_ = HugeBuffer(size);
   is_ordinary_ = max(max_component(abs(box_.lower)), max_component(abs(box_.upper))) <= kLargestReach;
