@@ -82,56 +82,48 @@ bool is_occluded(float t_far) {
   return t_far < 0;
 }
 
-/// One call for each ray.
-class SingleClosest final : public Work {
+/// One call for each ray. Query is RTCRayHit, or RTCRay for any hit.
+template <class Query>
+class Singles final : public Work {
  public:
-  SingleClosest(RTCScene scene, std::span<const Ray> rays) : scene_(scene), queries_(rays.size()) {
+  Singles(RTCScene scene, std::span<const Ray> rays) : scene_(scene), queries_(rays.size()) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      write(rays[i], queries_[i].ray);
-      queries_[i].hit.geomID = queries_[i].hit.primID = RTC_INVALID_GEOMETRY_ID;
+      if constexpr (kIsClosest) {
+        write(rays[i], queries_[i].ray);
+        queries_[i].hit.geomID = queries_[i].hit.primID = RTC_INVALID_GEOMETRY_ID;
+      } else {
+        write(rays[i], queries_[i]);
+      }
     }
   }
   void run(Executor& executor) override {
     executor.for_range(0, queries_.size(), kRaysPerChunk, [this](std::size_t begin, std::size_t end) {
       const DenormalsAreZero mode;
       RTCIntersectContext context = context_for(false);
-      for (std::size_t i = begin; i < end; ++i) rtcIntersect1(scene_, &context, &queries_[i]);
+      for (std::size_t i = begin; i < end; ++i) {
+        if constexpr (kIsClosest)
+          rtcIntersect1(scene_, &context, &queries_[i]);
+        else
+          rtcOccluded1(scene_, &context, &queries_[i]);
+      }
     });
   }
   Answers answers() const override {
     Answers answers;
-    for (const RTCRayHit& query : queries_)
-      if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) answers.add_hit(query.ray.tfar);
+    for (const Query& query : queries_) {
+      if constexpr (kIsClosest) {
+        if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) answers.add_hit(query.ray.tfar);
+      } else {
+        if (is_occluded(query.tfar)) answers.add_hit(1);
+      }
+    }
     return answers;
   }
 
  private:
+  static constexpr bool kIsClosest = std::is_same_v<Query, RTCRayHit>;
   RTCScene scene_;
-  std::vector<RTCRayHit> queries_;
-};
-
-class SingleAny final : public Work {
- public:
-  SingleAny(RTCScene scene, std::span<const Ray> rays) : scene_(scene), queries_(rays.size()) {
-    for (std::size_t i = 0; i < rays.size(); ++i) write(rays[i], queries_[i]);
-  }
-  void run(Executor& executor) override {
-    executor.for_range(0, queries_.size(), kRaysPerChunk, [this](std::size_t begin, std::size_t end) {
-      const DenormalsAreZero mode;
-      RTCIntersectContext context = context_for(false);
-      for (std::size_t i = begin; i < end; ++i) rtcOccluded1(scene_, &context, &queries_[i]);
-    });
-  }
-  Answers answers() const override {
-    Answers answers;
-    for (const RTCRay& query : queries_)
-      if (is_occluded(query.tfar)) answers.add_hit(1);
-    return answers;
-  }
-
- private:
-  RTCScene scene_;
-  std::vector<RTCRay> queries_;
+  std::vector<Query> queries_;
 };
 
 /// Sixteen neighbours of the set in each call. Query is RTCRayHit16, or RTCRay16 for any hit.
@@ -258,8 +250,8 @@ class EmbreeScene final : public BuiltScene {
   std::unique_ptr<Work> prepare(std::span<const Ray> rays, const TraceOptions& options) const override {
     const bool is_closest = options.question == Question::closest_hit;
     if (options.mode == "single") {
-      if (is_closest) return std::make_unique<SingleClosest>(scene_, rays);
-      return std::make_unique<SingleAny>(scene_, rays);
+      if (is_closest) return std::make_unique<Singles<RTCRayHit>>(scene_, rays);
+      return std::make_unique<Singles<RTCRay>>(scene_, rays);
     }
     if (is_closest) return std::make_unique<Packets<RTCRayHit16>>(scene_, rays, options.is_coherent);
     return std::make_unique<Packets<RTCRay16>>(scene_, rays, options.is_coherent);
