@@ -1,4 +1,5 @@
-// finish_test.cpp: do the weights and the normals of a batch have the bits of the scalar ones?
+// finish_test.cpp: do the weights and the normals of a batch, and of one ray, have the bits of the scalar
+// ones?
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -63,6 +64,10 @@ void expect_finished_right(const std::string& name, const std::vector<Triangle>&
                           test::same_bits(hits[i].v, crossing.v);
           for (int k = 0; k < 3; ++k) is_right &= test::same_bits(hits[i].normal[k], normal[k]);
           wrong += !is_right;
+          TriangleHit one;
+          Hit full;
+          ASSERT_TRUE(kernels->closest_full_hit(*tree, rays[i], bvh.bounds(), one, full));
+          wrong += one.key != found[i].key || !(full == hits[i]);
         }
         EXPECT_EQ(wrong, 0u) << kernels->name << ", " << count << " rays";
         EXPECT_GE(hit_count, count / 4) << "the rays are too easy";
