@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench_report.h"
 #include "boxwood/core/error.h"
 #include "small_bench.h"
 
