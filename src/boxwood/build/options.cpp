@@ -2,15 +2,16 @@
 
 namespace boxwood {
 
-// The figures behind the presets, as ratios to Embree 3.13's MEDIUM in one process, one thread, block_size 4
-// (the kernels'): how many times as fast the tree is built, and how many nodes and blocks bounce rays visit
-// in the wide tree, in units of a node (a block counts half). Bunny / kitchen / soup of a million / terrain
-// of half a million triangles; docs/performance-log.md says more.
+// The figures behind the presets, with blocks of four (the kernels'): the time to build a whole scene beside
+// `balanced`, in thread time, and how many nodes and blocks bounce rays visit in the wide tree, in units of a
+// node (a block counts half). Bunny / kitchen / soup of 300,000 / terrain of half a million triangles. There
+// `balanced` is built 1.6 / 1.5 / 1.75 / 1.6 times as fast as Embree 3.13 builds MEDIUM;
+// docs/performance-log.md says more.
 //
-//     preset      build                       visits
-//     fast        3.3 / 2.8 / 4.1 / 3.5       13.0 / 4.6 / 35.6 / 7.5
-//     balanced    2.0 / 1.5 / 2.5 / 1.8       12.0 / 4.4 / 34.4 / 6.8
-//     best        0.8 / 0.47 / 0.64 / 0.56    11.8 / 4.2 / 26.7 / 6.8     (HIGH: 0.16 / 0.44 / 0.30 / 0.46)
+//     preset      time                        visits
+//     fast        0.8 / 0.8 / 0.8 / 0.6       9.7 / 9.4 / 25.1 / 9.2
+//     balanced    1                           9.1 / 8.6 / 24.1 / 8.5
+//     best        1.15 / 1.3 / 2.6 / 1.1      9.1 / 8.4 / 21.0 / 8.6
 
 // Linear in the primitives, and in rooms even better than bins alone.
 BuildOptions BuildOptions::fast() {
