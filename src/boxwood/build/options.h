@@ -28,8 +28,9 @@ struct BuildOptions {
   float reinsertion_share = 0.003f;
   /// With a clip function: at most so many cuts for each primitive on average, 0 to 4 (spatial_split.h).
   float split_share = 0;
-  /// For a scene: its triangles take half the memory, and rays a little longer, up to twice as long where the
-  /// tree would fit the cache in full. Answers are the same. Builders have no use for it.
+  /// For a scene: its triangles take 28 to 32 bytes each in place of 49 to 60, and rays 1.2 to 1.6 times as
+  /// long, 3 times in a large soup (docs/algorithms/wide-trees.md). Answers are the same. Builders have no use
+  /// for it.
   bool is_compact = false;
   /// Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
   Executor* executor = nullptr;
