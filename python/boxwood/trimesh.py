@@ -30,7 +30,7 @@ class RayMeshIntersector:
         self.mesh = geometry
         self.threads = threads
         self._scale_to_box = scale_to_box
-        self._built: tuple[int, Scene, _Array, float] | None = None
+        self._built: "tuple[int, Scene, _Array, float] | None" = None
 
     def intersects_location(
         self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True, **kwargs: int
