@@ -238,13 +238,15 @@ TEST_F(Pbrt, PartsOfQuadricsAreMeshesOnTheSurfaceFacingOutwards) {
         gradient[axis] = distance(m.positions[i] + step) - distance(m.positions[i] - step);
       }
       const bool is_tip = geometry == 3 && m.positions[i].z > 1.99f;
-      if (!is_tip && length(gradient) > 1e-3f)
+      if (!is_tip && length(gradient) > 1e-3f) {
         EXPECT_GT(dot(normalize(gradient), m.normals[i]), .99f) << geometry;
+      }
     }
     for (std::size_t t = 0; t < m.indices.size(); ++t)
-      if (const Vec3 n = facing(m, t); is_finite(n))
+      if (const Vec3 n = facing(m, t); is_finite(n)) {
         EXPECT_GT(
             dot(n, m.normals[m.indices[t][0]] + m.normals[m.indices[t][1]] + m.normals[m.indices[t][2]]), 0);
+      }
   };
   const auto across = [](Vec3 p) { return std::sqrt(p.x * p.x + p.y * p.y); };
   check(0, [](Vec3 p) { return length(p) - 2; });

@@ -315,7 +315,9 @@ TEST(Bsdf, APaneReflectsTheSumOfItsInnerReflections) {
   for (int i = 0; i < kCount; ++i) {
     const auto sample = probe.bsdf.sample(random.uniform(), {});
     ASSERT_TRUE(sample);
-    if (sample->is_transmission) EXPECT_LE(length(sample->direction + at_cosine(0.4f)), 1e-6f);
+    if (sample->is_transmission) {
+      EXPECT_LE(length(sample->direction + at_cosine(0.4f)), 1e-6f);
+    }
     reflected += !sample->is_transmission;
   }
   EXPECT_NEAR(static_cast<float>(reflected) / kCount, sum, 0.005f);

@@ -123,7 +123,9 @@ TEST(EnvironmentLight, DensityIntegratesToOneAndSamplesFollowIt) {
     const auto sample = light.sample(sampler.next_2d());
     ASSERT_GT(sample.pdf, 0);
     EXPECT_NEAR(length(sample.direction), 1, 1e-5f);
-    if (s % 64 == 0) EXPECT_NEAR(light.pdf(sample.direction) / sample.pdf, 1, 0.05) << s;
+    if (s % 64 == 0) {
+      EXPECT_NEAR(light.pdf(sample.direction) / sample.pdf, 1, 0.05) << s;
+    }
     sum += light.radiance(sample.direction).y / sample.pdf;
   }
   EXPECT_NEAR(sum / kCount / radiance, 1, 0.01);
