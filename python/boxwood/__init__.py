@@ -16,11 +16,11 @@ from ._core import (
     Scene,
     SceneDesc,
     Surfaces,
-    __version__,
     cpu_target,
     load,
     load_description,
 )
+from ._core import version as __version__
 
 __all__ = [
     "AllHits",

@@ -12,7 +12,7 @@ namespace boxwood::python {
 
 NB_MODULE(_core, module) {
   nb::set_leak_warnings(false);  // what Python has not yet freed when it ends is no fault of ours
-  module.attr("__version__") = BOXWOOD_VERSION;
+  module.attr("version") = BOXWOOD_VERSION;
   nb::exception<FileError>(module, "FileError", PyExc_OSError).attr("__doc__") = doc::FileError;
   module.def(
       "cpu_target",

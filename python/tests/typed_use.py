@@ -31,3 +31,4 @@ if TYPE_CHECKING:
     desc.add_instance(0, np.eye(4))
     assert_type(bw.Scene(desc).name, str)
     assert_type(bw.cpu_target(), str)
+    assert_type(bw.__version__, str)
