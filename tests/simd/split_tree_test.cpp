@@ -109,9 +109,11 @@ void expect_nothing_lost(const SplitTriangles& split, const std::vector<Ray>& ra
   const WideBvh<W> wide = split.tree<W>();
   const std::vector<Box3> whole = boxes(split.triangles);
   ASSERT_EQ(validate(wide, whole), "");
-  const TriangleTree tree(wide, split.triangles, {}, serial_executor());
-  for (const Kernels* kernels : available_kernels())
-    if (kernels->width == W) test::expect_equal_to(*kernels, tree, rays, wide.box, answers, true);
+  for (const Layout layout : test::kLayouts) {
+    const TriangleTree tree(wide, split.triangles, {}, serial_executor(), layout);
+    for (const Kernels* kernels : available_kernels())
+      if (kernels->width == W) test::expect_equal_to(*kernels, tree, rays, wide.box, answers, true);
+  }
 }
 
 void expect_nothing_lost(const SplitTriangles& split, std::vector<Ray> rays) {
