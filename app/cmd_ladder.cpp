@@ -51,8 +51,7 @@ void ladder_command(const LadderArguments& arguments) {
 
 void add_ladder(CLI::App& program) {
   const auto arguments = std::make_shared<LadderArguments>();
-  CLI::App* command =
-      program.add_subcommand("ladder", "From brute force to the fastest kernel, measured");
+  CLI::App* command = program.add_subcommand("ladder", "From brute force to the fastest kernel, measured");
   command
       ->add_option("SCENE", arguments->scene,
                    "A file (.obj .ply .stl .gltf .glb .pbrt) or a\n"

@@ -8,7 +8,6 @@
 namespace boxwood::app {
 namespace {
 
-
 // Set by a signal handler and read by every thread that renders; lock-free, so a handler may touch it.
 std::atomic<bool> is_asked_to_stop = false;
 static_assert(std::atomic<bool>::is_always_lock_free);

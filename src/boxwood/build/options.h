@@ -29,8 +29,8 @@ struct BuildOptions {
   /// With a clip function: at most so many cuts for each primitive on average, 0 to 4 (spatial_split.h).
   float split_share = 0;
   /// For a scene: its triangles take 28 to 32 bytes each in place of 49 to 60, and rays 1.2 to 1.6 times as
-  /// long, 3 times in a large soup (docs/algorithms/wide-trees.md). Answers are the same. Builders have no use
-  /// for it.
+  /// long, 3 times in a large soup (docs/algorithms/wide-trees.md). Answers are the same. Builders have no
+  /// use for it.
   bool is_compact = false;
   /// Who works; nullptr means default_executor() (oneTBB). The tree is the same for all.
   Executor* executor = nullptr;

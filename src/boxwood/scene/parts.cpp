@@ -69,7 +69,9 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   };
 
   // Build and collapse; let go of what the next step does not need.
-  const Clip clip = [&](PrimId key, const Box3& region) { return corners_of_key(key).triangle().clipped_box(region); };
+  const Clip clip = [&](PrimId key, const Box3& region) {
+    return corners_of_key(key).triangle().clipped_box(region);
+  };
   BuildOptions in_blocks = options;
   in_blocks.block_size = kBlockWidth;  // a block is tested at the price of one triangle
   Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, in_blocks);
