@@ -25,7 +25,7 @@ TEST(Bench, AllEnginesAgreeInAllModes) {
     EXPECT_GT(rate.answers.hits, 10u) << rate.engine << rate.set;
     EXPECT_GT(rate.answers.checksum, 0) << rate.engine << rate.set;
   }
-  EXPECT_EQ(report.builds.size(), 2u * (engines > 1 ? 3 + 3 + 1 : 3));
+  EXPECT_EQ(report.builds.size(), 2u * (engines > 1 ? 4 + 3 + 1 : 4));
   for (const BuildReport& build : report.builds) {
     EXPECT_GT(build.build_ms, 0);
     EXPECT_GT(build.bytes_per_triangle, 10) << build.engine << build.preset;
@@ -33,7 +33,7 @@ TEST(Bench, AllEnginesAgreeInAllModes) {
   }
   ASSERT_EQ(report.batch_sizes.size(), 1u);
   EXPECT_EQ(report.batch_sizes[0].size, 100u);
-  EXPECT_EQ(report.trees.size(), 5u * (engines > 1 ? 4 : 2));
+  EXPECT_EQ(report.trees.size(), 5u * (engines > 1 ? 5 : 3));
 }
 
 TEST(Bench, StandsAloneWithoutPeers) {
