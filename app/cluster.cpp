@@ -3,6 +3,15 @@
 #include <cstdlib>
 #include <stdexcept>
 
+namespace boxwood::app {
+
+bool is_in_cluster() {
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  return size && std::atoi(size) > 1;
+}
+
+}  // namespace boxwood::app
+
 #ifdef BOXWOOD_HAS_MPI
 
 #include <chrono>
@@ -137,11 +146,6 @@ struct Cluster::State {
   }
 };
 
-bool is_in_cluster() {
-  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
-  return size && std::atoi(size) > 1;
-}
-
 Cluster::Cluster() : state_(std::make_unique<State>()) {
   int provided = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
@@ -248,11 +252,6 @@ void Cluster::cannot_help(const std::string& why) {
 namespace boxwood::app {
 
 struct Cluster::State {};
-
-bool is_in_cluster() {
-  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
-  return size && std::atoi(size) > 1;
-}
 
 Cluster::Cluster() {
   throw std::runtime_error(
