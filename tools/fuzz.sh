@@ -29,11 +29,14 @@ for format in $formats; do
   mkdir -p "build/fuzz/corpus/$format"
   echo "fuzzing the $format reader for $seconds s"
   # Leaks are looked for; 2 GB and 10 s for one input are the bounds of what is taken for a bomb or a hang.
+  status=0
   "build/fuzz/fuzz_$format" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
     -artifact_prefix="build/fuzz/found/$format-" -print_final_stats=1 -verbosity=0 \
-    "build/fuzz/corpus/$format" tests/fuzz/seeds/"$format" 2>&1 | grep -E "ERROR|SUMMARY|Test unit|exec_per_sec|executed_units" || true
-  if ls build/fuzz/found/"$format"-* >/dev/null 2>&1; then
-    echo "the $format reader fails on:" build/fuzz/found/"$format"-* >&2
+    "build/fuzz/corpus/$format" tests/fuzz/seeds/"$format" >build/fuzz/log 2>&1 || status=$?
+  grep -E "ERROR|SUMMARY|Test unit|exec_per_sec|executed_units" build/fuzz/log || true
+  if [ $status -ne 0 ] || ls build/fuzz/found/"$format"-* >/dev/null 2>&1; then
+    tail -n 5 build/fuzz/log >&2
+    echo "the $format reader fails; what it failed on is in build/fuzz/found" >&2
     exit 1
   fi
 done
