@@ -170,9 +170,8 @@ void bind_answers(nb::module_& module) {
   using nb::sig;
 
   // What Hits and AllHits have in common; `rows` is the leading shape of their columns.
-  const auto bind_columns = [](auto& type, auto rows, const char* scope) {
+  const auto bind_columns = [](auto& type, auto rows) {
     using Result = typename std::decay_t<decltype(type)>::Type;
-    (void)scope;
     type.def_prop_ro(
         "t", [rows](Result& r) { return r.columns.t.get(r.block, rows(r)); },
         sig("def t(self) -> numpy.typing.NDArray[numpy.float32]"), doc::Hit_t);
@@ -213,8 +212,7 @@ void bind_answers(nb::module_& module) {
       module, "Hits",
       "Closest hits as columns, one row for each ray; a miss has t = inf, ids of -1, and NaN for "
       "normal and position.");
-  bind_columns(
-      hits, [](const Hits& h) { return h.shape; }, "Hits");
+  bind_columns(hits, [](const Hits& h) { return h.shape; });
   hits.def_prop_ro(
           "shape", [shape_tuple](const Hits& h) { return shape_tuple(h.shape); }, sig(shape_sig),
           "Of the rays; () for a single one.")
@@ -229,8 +227,7 @@ void bind_answers(nb::module_& module) {
                                "Every crossing of each ray as columns: the rows offsets[i] to offsets[i + "
                                "1], the end not included, are "
                                "those of ray i, by t.");
-  bind_columns(
-      all_hits, [](const AllHits& h) { return Shape{h.count}; }, "AllHits");
+  bind_columns(all_hits, [](const AllHits& h) { return Shape{h.count}; });
   all_hits
       .def_prop_ro(
           "offsets", [](AllHits& h) { return h.offsets.get(h.offset_block, Shape{count_of(h.shape) + 1}); },
