@@ -7,6 +7,7 @@
 
 #include "boxwood/core/random.h"
 #include "boxwood/gallery/gallery.h"
+#include "boxwood/query/distance.h"
 #include "scene_oracle.h"
 
 namespace boxwood {
@@ -253,6 +254,38 @@ TEST(Scene, ClosestPointEqualsTheBestOfAllPrimitives) {
     ASSERT_NEAR(found.distance, best, 1e-5f * (1 + best));
     ASSERT_NEAR(length(found.position - p), found.distance, 1e-5f * (1 + best));
     ASSERT_FALSE(scene.closest_point(p, 0.5f * best).instance_id.is_valid());
+  }
+}
+
+// Two meshes that share corners, and spheres among them; ties go to the smallest instance, then primitive.
+TEST(Scene, ClosestPointOfTheWorldIsThatOfBruteForce) {
+  Random random(5);
+  SceneDesc desc;
+  const TriangleMesh soup = random_mesh(random, 150, 0.2f);
+  std::vector<Sphere> balls;
+  for (int i = 0; i < 10; ++i) balls.push_back({random.in_box(splat(-1), splat(1)), 0.05f});
+  desc.add(soup);
+  desc.add(balls);
+  desc.add(soup);
+  for (const bool is_compact : {false, true}) {
+    BuildOptions options;
+    options.is_compact = is_compact;
+    const Scene scene(desc, options);
+    for (int i = 0; i < 2000; ++i) {
+      Vec3 p = random.in_box(splat(-2), splat(2));
+      if (i % 3 == 0) p = soup.positions[random.below(static_cast<std::uint32_t>(soup.positions.size()))];
+      ScenePoint best;
+      const auto consider = [&](const ShapePoint& found, InstanceId instance) {
+        if (found.distance < best.distance)
+          best = {found.distance, found.position, instance, GeometryId(instance.value), found.prim_id};
+      };
+      for (std::size_t k = 0; k < soup.indices.size(); ++k)
+        consider(nearest_point_of(triangle_of(soup, PrimId(k)), PrimId(k), p), InstanceId(0));
+      for (std::size_t k = 0; k < balls.size(); ++k)
+        consider(nearest_point_of(balls[k], PrimId(k), p), InstanceId(1));
+      ASSERT_EQ(scene.closest_point(p), best);
+      ASSERT_EQ(scene.closest_point(p, best.distance), best);
+    }
   }
 }
 

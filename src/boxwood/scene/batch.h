@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "boxwood/scene/scene.h"
+#include "boxwood/scene/stream.h"
 
 namespace boxwood::detail {
 
@@ -31,5 +31,7 @@ void for_chunks(Executor* given, std::size_t count, const Body& body) {
 /// hits[i] answers rays[i]. Precondition: at most kMaxChunk rays.
 void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* hits);
 void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits);
+/// found[i] answers points[i]. Errors as in Scene::closest_point. Precondition: at most kMaxChunk points.
+void answer_closest_points(const Scene::Parts& parts, std::span<const SearchPoint> points, ScenePoint* found);
 
 }  // namespace boxwood::detail

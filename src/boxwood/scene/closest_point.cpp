@@ -1,11 +1,17 @@
 // closest_point.cpp: which point of a scene is nearest?
 //
-// The walk of traverse.h with a distance in place of a t. Boxes of placed objects are taken into the world
-// one by one, and the distance to a primitive is never reported below that of its own box: the law of gate.h,
-// for distances.
+// A kernel (simd/kernels.h) finds the nearest of the world's triangles. The rest is the walk of traverse.h
+// with a distance in place of a t: boxes of placed objects are taken into the world one by one, and the
+// distance to a primitive is never reported below that of its own box: the law of gate.h, for distances.
+// Many points are answered along a Z-shaped curve, so that each begins with what the one before was nearest
+// to, and most boxes are too far from the start.
+#include <algorithm>
 #include <stdexcept>
 
+#include "boxwood/core/morton.h"
 #include "boxwood/query/distance.h"
+#include "boxwood/scene/batch.h"
+#include "boxwood/scene/stream.h"
 #include "boxwood/scene/walk.h"
 
 namespace boxwood {
@@ -112,10 +118,13 @@ struct ShapePointQuery : PointQuery {
   }
 };
 
-void search(const Scene::Parts& parts, const Part& part, const View& view, Best& best) {
+void search_triangles(const Part& part, const View& view, Best& best) {
   NoStatistics none;
   TrianglePointQuery triangles{{view, best}, part, rounding_of_points(view, part)};
   detail::traverse_triangles(part.triangles, triangles, none);
+}
+
+void search_shapes(const Scene::Parts& parts, const Part& part, const View& view, Best& best) {
   ShapePointQuery shapes{{view, best}, parts.desc, part};
   traverse(part.shape_bvh, shapes);
 }
@@ -128,24 +137,73 @@ struct PlacementPointQuery {
   float limit() const { return best.limit; }
   void visit(PrimId id) {
     const Placement& placement = parts.placements[id.value];
-    search(parts, parts.objects[placement.part_index], View{point, &placement}, best);
+    const Part& object = parts.objects[placement.part_index];
+    const View view{point, &placement};
+    search_triangles(object, view, best);
+    search_shapes(parts, object, view, best);
   }
 };
+
+void check_answerable(const Scene::Parts& parts) {
+  if (!parts.closest_point_obstacle.empty())
+    throw std::invalid_argument("closest_point: the scene cannot answer, " + parts.closest_point_obstacle);
+}
+
+/// Begins to look at the triangles of `block`; leaves there where the nearest triangle stands, if any is.
+ScenePoint find_point(const Scene::Parts& parts, Vec3 point, float max_distance, std::uint32_t& block) {
+  if (!is_finite(point) || !(max_distance >= 0)) return {};
+
+  // The world's triangles.
+  Best best{max_distance, false, {}, {}, {}};
+  simd::TrianglePoint nearest;
+  nearest.block = block;
+  const View world{point, nullptr};
+  if (parts.kernels && parts.kernels->closest_point(parts.world.triangles, point, max_distance, nearest)) {
+    if (nearest.is_found()) {
+      block = nearest.block;
+      const PartMesh& mesh = parts.world.mesh_of(nearest.key);
+      best = {nearest.distance, true, nearest.position, mesh.instance_id,
+              PrimId(nearest.key - mesh.first_key)};
+    }
+  } else {
+    search_triangles(parts.world, world, best);
+  }
+
+  // Everything else.
+  if (!parts.is_only_triangles) {
+    search_shapes(parts, parts.world, world, best);
+    PlacementPointQuery placements{parts, point, best};
+    traverse(parts.top_level, placements);
+  }
+  if (!best.found) return {};
+  return {best.limit, best.position, best.instance_id, parts.instances[best.instance_id.value].geometry,
+          best.primitive_id};
+}
 
 }  // namespace
 
 ScenePoint Scene::closest_point(Vec3 point, float max_distance) const {
-  if (!parts_->closest_point_obstacle.empty())
-    throw std::invalid_argument("closest_point: the scene cannot answer, " + parts_->closest_point_obstacle);
-  if (!is_finite(point) || !(max_distance >= 0)) return {};
+  check_answerable(*parts_);
+  std::uint32_t block = simd::TrianglePoint::kNone;
+  return find_point(*parts_, point, max_distance, block);
+}
 
-  Best best{max_distance, false, {}, {}, {}};
-  search(*parts_, parts_->world, View{point, nullptr}, best);
-  PlacementPointQuery placements{*parts_, point, best};
-  traverse(parts_->top_level, placements);
-  if (!best.found) return {};
-  return {best.limit, best.position, best.instance_id, parts_->instances[best.instance_id.value].geometry,
-          best.primitive_id};
+void detail::answer_closest_points(const Scene::Parts& parts, std::span<const SearchPoint> points,
+                                   ScenePoint* found) {
+  check_answerable(parts);
+  // The place of each point in the chunk, below its code.
+  constexpr int kPlaceBits = 12;
+  static_assert(kMaxChunk <= 1 << kPlaceBits);
+  std::uint64_t order[kMaxChunk];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    order[i] = std::uint64_t(morton30(points[i].point, parts.bounds)) << kPlaceBits | i;
+  std::sort(order, order + points.size());
+
+  std::uint32_t block = simd::TrianglePoint::kNone;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::size_t i = order[k] & ((1u << kPlaceBits) - 1);
+    found[i] = find_point(parts, points[i].point, points[i].max_distance, block);
+  }
 }
 
 }  // namespace boxwood

@@ -108,8 +108,7 @@ void stream_closest_point(const Scene& scene, const Stream& stream, const FillPo
                           const Take<SearchPoint, ScenePoint>& take) {
   one_for_each<SearchPoint, ScenePoint>(
       stream, fill, take, [&](std::span<const SearchPoint> points, std::span<ScenePoint> found) {
-        for (std::size_t i = 0; i < points.size(); ++i)
-          found[i] = scene.closest_point(points[i].point, points[i].max_distance);
+        detail::answer_closest_points(scene.parts(), points, found.data());
       });
 }
 

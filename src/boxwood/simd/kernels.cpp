@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include "boxwood/simd/batch-inl.h"
+#include "boxwood/simd/closest_point-inl.h"
 #include "boxwood/simd/finish-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -90,6 +91,15 @@ struct KernelsFor {
                           Hit* hits) {
     finish_all<Layout>(tree, rays, found, hits);
   }
+
+  static bool closest_point(const TriangleTree& tree, Vec3 point, float max_distance,
+                            TrianglePoint& nearest) {
+    if (!is_ordinary_point(point)) return false;
+    nearest.distance = max_distance;
+    closest_point_one<Layout>(tree, point, nearest);
+    if (!nearest.is_found()) nearest.distance = kInfinity;
+    return true;
+  }
 };
 
 /// Asks the kernel of the tree's layout.
@@ -134,7 +144,8 @@ const Kernels* table() {
                                   Either<Full::placed_all_hits, Compact::placed_all_hits>::ask,
                                   Either<Full::closest_hits, Compact::closest_hits>::ask,
                                   Either<Full::any_hits, Compact::any_hits>::ask,
-                                  Either<Full::finish_hits, Compact::finish_hits>::ask};
+                                  Either<Full::finish_hits, Compact::finish_hits>::ask,
+                                  Either<Full::closest_point, Compact::closest_point>::ask};
   return &kTable;
 }
 

@@ -27,6 +27,17 @@ struct TriangleHit {
   bool is_hit() const { return block != kNone; }
 };
 
+/// The point of a triangle that is nearest to a given one. None: no block, and distance = +inf.
+struct TrianglePoint {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  float distance = kInfinity;
+  Vec3 position;
+  std::uint32_t key = kNone;    ///< TriangleBlock::key of the triangle.
+  std::uint32_t block = kNone;  ///< Where it stands; also where to look first (Kernels::closest_point).
+
+  bool is_found() const { return block != kNone; }
+};
+
 /// What stands between the triangles below a placement and the answer: t is moved into `inside`, which is
 /// what the ray has inside the placement's world box, and counts when it is at least t_min then
 /// (shape/gate.h).
@@ -77,6 +88,12 @@ struct Kernels {
   /// are left to the caller.
   void (*finish_hits)(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
                       Hit* hits);
+
+  /// The point of a triangle within `max_distance` that is nearest to `point`, equal distance by key: that of
+  /// query/distance.h by brute force. `nearest.block` says where to look first, for instance at what the
+  /// point before was nearest to, and shows in the time only. False, and nothing is touched, for a point that
+  /// is not finite or beyond kLargestReach; `max_distance` must be at least 0.
+  bool (*closest_point)(const TriangleTree& tree, Vec3 point, float max_distance, TrianglePoint& nearest);
 };
 
 /// Every set of kernels that this program has and this machine can run, the fastest first. May be empty: then
