@@ -153,6 +153,59 @@ void expect_refused_when_deeper() {
   EXPECT_THROW(pack(kMaxWideDepth + 2), std::length_error);
 }
 
+/// A path of nodes beside which stands at each level what leaves most behind where two nodes are taken at a
+/// time: W - 1 nodes, of W nodes of one leaf each.
+template <int W>
+WideBvh<W> hedge() {
+  const Box3 box{{0, 0, 0}, {1, 1, 1}};
+  WideBvh<W> wide;
+  wide.box = box;
+  std::uint32_t block = 0;
+  const auto add = [&] {
+    wide.nodes.emplace_back();
+    return static_cast<std::uint32_t>(wide.nodes.size() - 1);
+  };
+  std::uint32_t path = add();
+  for (int depth = 0; depth < kMaxWideDepth - 2; ++depth) {
+    for (int c = 0; c < W; ++c) {
+      const std::uint32_t child = add();
+      wide.nodes[path].set(c, box, ChildRef::node(child));
+      for (int k = 0; c < W - 1 && k < W; ++k) {
+        const std::uint32_t twig = add();
+        wide.nodes[child].set(k, box, ChildRef::node(twig));
+        wide.nodes[twig].set(0, box, ChildRef::leaf(block++, 1));
+      }
+    }
+    path = static_cast<std::uint32_t>(wide.nodes.size() - 1);
+  }
+  wide.nodes[path].set(0, box, ChildRef::leaf(block++, 1));
+  wide.slots.resize(std::size_t(block) * kBlockWidth, PrimId(0));
+  return wide;
+}
+
+template <int W>
+void expect_room_for_two_at_a_time() {
+  const std::vector<Triangle> triangles{{{0, 0, 0}, {1, 0, 0}, {1, 1, 1}}};
+  const WideBvh<W> wide = hedge<W>();
+  const TriangleTree tree(wide, triangles, {}, serial_executor());
+  const Ray hit{{0.5f, -1, 0.2f}, 0, {0, 1, 0.01f}, kInfinity},
+      miss{{0.2f, -1, 0.5f}, 0, {0, 1, 0.01f}, kInfinity};
+  for (const Kernels* kernels : available_kernels()) {
+    if (kernels->width != W) continue;
+    std::vector<TriangleHit> hits;
+    bool is_hit = true;
+    ASSERT_TRUE(kernels->all_hits(tree, hit, wide.box, hits));
+    ASSERT_TRUE(kernels->any_hit(tree, miss, wide.box, is_hit));
+    EXPECT_EQ(hits.size(), tree.block_count());  // once for each block
+    EXPECT_FALSE(is_hit);
+  }
+}
+
+TEST(KernelDepth, RoomForTwoAtATime) {
+  expect_room_for_two_at_a_time<4>();
+  expect_room_for_two_at_a_time<8>();
+}
+
 TEST(KernelDepth, DeeperTreesAreRefused) {
   expect_refused_when_deeper<4>();
   expect_refused_when_deeper<8>();

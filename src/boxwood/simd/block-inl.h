@@ -12,18 +12,11 @@
 #define BOXWOOD_SIMD_BLOCK_INL_H
 #endif
 
-#include "boxwood/simd/ray-inl.h"
+#include "boxwood/simd/lanes-inl.h"
 #include "boxwood/simd/triangle_tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
-
-template <class D, class M>
-HWY_INLINE std::uint32_t mask_bits(D d, M mask) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, mask, bits);
-  return bits[0];
-}
 
 /// Lanes that the ray's line may cross, and of those the ones that it crosses for sure, as bits.
 struct Crossed {

@@ -217,7 +217,7 @@ class Bundle {
     const auto enters = hn::RebindMask(di, hn::Le(hn::BitCast(d, entry), hn::BitCast(d, exit)));
     const std::size_t count = hn::CountTrue(di, enters);
     const VIW sorted =
-        sort_all_descending(di, hn::Compress(hn::IfThenElseZero(enters, make_keys(entry)), enters));
+        sort_all_descending(di, compress(di, hn::IfThenElseZero(enters, make_keys(entry)), enters));
     hn::StoreU(sorted, di, keys);
     hn::StoreU(hn::Or(hn::And(sorted, hn::Set(di, 7)), hn::Set(di, static_cast<std::int32_t>(ref))), di,
                refs);

@@ -139,7 +139,7 @@ class Interleaved {
     const std::int32_t* children = children_of<Layout>(node);
     const std::size_t count = hn::CountTrue(di, slabs.enters);
     if constexpr (kAny) {
-      hn::StoreU(hn::Compress(hn::Load(di, children), slabs.enters), di, top);
+      hn::StoreU(compress(di, hn::Load(di, children), slabs.enters), di, top);
     } else {
       push_children(di, make_keys(slabs.entry), slabs.enters, children, count, top + kShortStack, top);
     }
@@ -185,8 +185,8 @@ class Interleaved {
       const VIW keys = hn::LoadU(di, from + kShortStack), refs = hn::LoadU(di, from);
       const auto keep =
           hn::And(hn::Not(hn::Gt(keys, limit)), hn::FirstN(di, static_cast<std::size_t>(top - from)));
-      hn::StoreU(hn::Compress(keys, keep), di, to + kShortStack);
-      hn::StoreU(hn::Compress(refs, keep), di, to);
+      hn::StoreU(compress(di, keys, keep), di, to + kShortStack);
+      hn::StoreU(compress(di, refs, keep), di, to);
       to += hn::CountTrue(di, keep);
     }
     ray.top = to;

@@ -13,7 +13,7 @@
 
 #include <cstddef>
 
-#include "boxwood/simd/ray-inl.h"
+#include "boxwood/simd/lanes-inl.h"
 #include "boxwood/simd/triangle_tree.h"
 
 HWY_BEFORE_NAMESPACE();

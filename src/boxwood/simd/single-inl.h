@@ -106,7 +106,7 @@ HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const s
                               std::size_t count, std::int32_t* stack_keys, std::int32_t* stack_refs) {
   // What is not entered becomes 0 and so sorts last. (With AVX-512 the compression sees to that.)
   if constexpr (HWY_TARGET > HWY_AVX3) keys = hn::IfThenElseZero(enters, keys);
-  keys = hn::Compress(keys, enters);
+  keys = compress(di, keys, enters);
   if (HWY_LIKELY(count <= 4)) {
     const DI4 d4;
     const hn::Vec<DI4> first = sort_descending(first_four(di, keys));
@@ -192,62 +192,66 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
   result = hit;
 }
 
+/// Room for a walk that takes two nodes at a time. What is on top of its stack lies deepest in the tree, so
+/// of each level there are at most the children of two nodes, less the two that were taken.
+inline constexpr int kTwoStacks = 2 * kMaxWideStack<kWidth> + kWidth;
+
+/// Calls see(leaf) with the leaves that the ray enters before `limit`, in no order, until it returns true;
+/// returns whether it did. Where no order is asked for, two nodes need not wait for each other.
+template <class Layout, bool kSigned, class See>
+HWY_INLINE bool enter_leaves(const char* pool, const KernelRay& ray, float limit, const See& see) {
+  const DIW di;
+  const BoxRay<kSigned> box_ray(ray);
+  HWY_ALIGN std::int32_t nodes[kTwoStacks], leaves[3 * kWidth];
+  std::size_t node_count = 1, leaf_count = 0;
+  nodes[0] = 0;
+  while (node_count > 0) {
+    // Where there is one node only, nothing is entered of the other.
+    const bool are_two = node_count > 1;
+    const char* first = node_at(pool, static_cast<std::uint32_t>(nodes[node_count - 1]));
+    const char* second = node_at(pool, static_cast<std::uint32_t>(nodes[are_two ? node_count - 2 : 0]));
+    node_count -= 1 + are_two;
+    const auto first_enters = box_ray.template cross<Layout>(first, limit).enters;
+    const auto second_enters = box_ray.template cross<Layout>(second, are_two ? limit : -kInfinity).enters;
+    const auto push = [&](const char* node, hn::Mask<DIW> enters) {
+      const VIW children = hn::Load(di, children_of<Layout>(node));
+      const auto is_leaf = hn::TestBit(children, hn::Set(di, 1));
+      const auto is_entered_node = hn::AndNot(is_leaf, enters), is_entered_leaf = hn::And(is_leaf, enters);
+      hn::StoreU(compress(di, children, is_entered_node), di, nodes + node_count);
+      hn::StoreU(compress(di, children, is_entered_leaf), di, leaves + leaf_count);
+      node_count += hn::CountTrue(di, is_entered_node);
+      leaf_count += hn::CountTrue(di, is_entered_leaf);
+    };
+    push(second, second_enters);
+    push(first, first_enters);
+
+    while (leaf_count > 0)
+      if (see(static_cast<std::uint32_t>(leaves[--leaf_count]))) return true;
+  }
+  return false;
+}
+
 template <class Layout, class Way>
 HWY_NOINLINE bool any_hit_one(const char* pool, const KernelRay& ray, const Way& way, float t_max) {
-  const DIW di;
-  const BoxRay<Way::kSigned> box_ray(ray);
   const float limit = way.limit(t_max);
-  HWY_ALIGN std::uint32_t refs[kStackSize];
-  refs[0] = kBottom;
-  int top = 0;
-  std::uint32_t current = 0;
-  while (true) {
-    if ((current & 3) == 0) {
-      const char* node = node_at(pool, current);
-      const Slabs slabs = box_ray.template cross<Layout>(node, limit);
-      const std::int32_t* children = children_of<Layout>(node);
-      unsigned bits = mask_bits(di, slabs.enters);
-      if (bits != 0) {
-        const auto child = [&] { return static_cast<std::uint32_t>(children[__builtin_ctz(bits)]); };
-        current = child();
-        for (bits &= bits - 1; bits; bits &= bits - 1) refs[++top] = child();
-        continue;
-      }
-    } else {
-      if (current == kBottom) return false;
-      const bool is_hit = visit_leaf<Layout>(
-          pool, current, ray, [&] { return limit; },
-          [&](const TriangleBlock&, std::uint32_t, std::uint32_t lanes, const float* ts) {
-            for (; lanes; lanes &= lanes - 1)
-              if (way.admits(way.move(ts[__builtin_ctz(lanes)]))) return true;
-            return false;
-          });
-      if (is_hit) return true;
-    }
-    current = refs[top--];
-  }
+  return enter_leaves<Layout, Way::kSigned>(pool, ray, limit, [&](std::uint32_t leaf) {
+    return visit_leaf<Layout>(
+        pool, leaf, ray, [&] { return limit; },
+        [&](const TriangleBlock&, std::uint32_t, std::uint32_t lanes, const float* ts) {
+          for (; lanes; lanes &= lanes - 1)
+            if (way.admits(way.move(ts[__builtin_ctz(lanes)]))) return true;
+          return false;
+        });
+  });
 }
 
 template <class Layout, class Way>
 HWY_NOINLINE void all_hits_one(const char* pool, const KernelRay& ray, const Way& way, float t_max,
                                std::vector<TriangleHit>& hits) {
-  const DIW di;
-  const BoxRay<Way::kSigned> box_ray(ray);
   const float limit = way.limit(t_max);
-  HWY_ALIGN std::uint32_t refs[kStackSize];
-  refs[0] = kBottom;
-  int top = 0;
-  for (std::uint32_t current = 0; current != kBottom; current = refs[top--]) {
-    if ((current & 3) == 0) {
-      const char* node = node_at(pool, current);
-      const Slabs slabs = box_ray.template cross<Layout>(node, limit);
-      const std::int32_t* children = children_of<Layout>(node);
-      for (std::uint32_t bits = mask_bits(di, slabs.enters); bits; bits &= bits - 1)
-        refs[++top] = static_cast<std::uint32_t>(children[__builtin_ctz(bits)]);
-      continue;
-    }
-    visit_leaf<Layout>(
-        pool, current, ray, [&] { return limit; },
+  enter_leaves<Layout, Way::kSigned>(pool, ray, limit, [&](std::uint32_t leaf) {
+    return visit_leaf<Layout>(
+        pool, leaf, ray, [&] { return limit; },
         [&](const TriangleBlock& block, std::uint32_t at, std::uint32_t lanes, const float* ts) {
           for (; lanes; lanes &= lanes - 1) {
             const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
@@ -257,7 +261,7 @@ HWY_NOINLINE void all_hits_one(const char* pool, const KernelRay& ray, const Way
           }
           return false;
         });
-  }
+  });
 }
 
 }  // namespace boxwood::simd::HWY_NAMESPACE

@@ -8,20 +8,26 @@
 namespace boxwood::simd {
 namespace {
 
+/// How far a walk may go.
+struct Reach {
+  int depth = 0;      ///< Of the deepest node.
+  int max_stack = 0;  ///< The most children that are ever left behind.
+};
+
 /// A walk leaves at most all children but one behind at each level. In a compact node a ray may seem to enter
 /// empty children too, where steps are next to nothing.
 template <int W>
-int find_max_stack(const WideBvh<W>& wide, Layout layout) {
-  std::vector<int> left_above(wide.nodes.size(), 0);  // children stand behind their parents
-  int most = 0;
+Reach find_reach(const WideBvh<W>& wide, Layout layout) {
+  std::vector<Reach> above(wide.nodes.size());  // children stand behind their parents
+  Reach most;
   for (std::size_t i = 0; i < wide.nodes.size(); ++i) {
     int children = 0;
     for (const ChildRef child : wide.nodes[i].children) children += !child.is_empty();
     if (layout == Layout::compact) children = W;
-    const int left = left_above[i] + children;
-    most = std::max(most, left);
+    const int left = above[i].max_stack + children;
+    most = {std::max(most.depth, above[i].depth), std::max(most.max_stack, left)};
     for (const ChildRef child : wide.nodes[i].children)
-      if (!child.is_leaf()) left_above[child.index()] = left - 1;
+      if (!child.is_leaf()) above[child.index()] = {above[i].depth + 1, left - 1};
   }
   return most;
 }
@@ -99,10 +105,11 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Layout la
     throw std::length_error("the tree and its triangles need more than 8 GB, which 28 bits cannot address");
   pool_ = HugeBuffer(size);
   is_ordinary_ = max(max_component(abs(box_.lower)), max_component(abs(box_.upper))) <= kLargestReach;
-  max_stack_ = find_max_stack(wide, layout);
-  if (max_stack_ > kMaxWideStack<W>)
-    throw std::length_error("a walk of the tree leaves up to " + std::to_string(max_stack_) +
-                            " children for later, expected at most " + std::to_string(kMaxWideStack<W>));
+  const Reach reach = find_reach(wide, layout);
+  if (reach.depth > kMaxWideDepth)
+    throw std::length_error("a node of the tree lies at depth " + std::to_string(reach.depth) +
+                            ", expected at most " + std::to_string(kMaxWideDepth));
+  max_stack_ = reach.max_stack;
   if (layout == Layout::full)
     pack<W, WideNode<W>, TriangleBlock>(wide, fetch, executor);
   else

@@ -65,7 +65,7 @@ class TriangleTree {
 
   /// Packs `wide`; its slots pick the triangles, and are their keys. A compact tree needs the vertices as
   /// long as it lives. The executor shows in the time only. Throws std::length_error when the pool would be
-  /// larger than 8 GB, or a walk could need a larger stack than kMaxWideStack (wide.h).
+  /// larger than 8 GB, or a node lies deeper than kMaxWideDepth (wide.h).
   template <int W>
   TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Layout layout, Executor& executor);
   /// The same for triangles in an array. No keys: each triangle's is its number.
