@@ -8,10 +8,14 @@
 #include <nanobind/stl/string.h>
 
 #include "docstrings.h"
+#include "past_cache.h"
 #include "running.h"
 
 namespace boxwood::python {
 namespace {
+
+/// Results above this do not stay in a cache until somebody looks at them.
+constexpr std::size_t kMinLargeBytes = std::size_t(4) << 20;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -69,6 +73,7 @@ HitColumns::HitColumns(std::size_t count, Block& block) {
                     at_uv = layout.add<float>(2 * count), at_normal = layout.add<float>(3 * count),
                     at_position = layout.add<float>(3 * count);
   block = layout.allocate();
+  is_large = block->size() > kMinLargeBytes;
   t = column<float>(block, at_t);
   ids.primitive_id = column<std::int32_t>(block, at_primitive);
   ids.geometry_id = column<std::int32_t>(block, at_geometry);
@@ -80,33 +85,45 @@ HitColumns::HitColumns(std::size_t count, Block& block) {
 }
 
 void HitColumns::write(std::size_t begin, std::span<const Ray> rays, std::span<const Hit> hits) {
-  // A few at a time and column by column, so that hits come from the nearest cache and each loop writes in
-  // order.
+  // A few at a time: row by row into the nearest cache, and from there column by column to where they stay.
   constexpr std::size_t kStep = 128;
+  struct Staged {
+    float t[kStep], uv[2 * kStep], normal[3 * kStep], position[3 * kStep];
+    std::int32_t primitive_id[kStep], geometry_id[kStep], instance_id[kStep], part[kStep];
+  } s;
   for (std::size_t first = 0; first < hits.size(); first += kStep) {
-    const std::size_t last = std::min(first + kStep, hits.size());
-    for (std::size_t i = first; i < last; ++i) t.data[begin + i] = hits[i].t;
-    for (std::size_t i = first; i < last; ++i)
-      ids.primitive_id.data[begin + i] = signed_id(hits[i].primitive_id.value);
-    for (std::size_t i = first; i < last; ++i)
-      ids.geometry_id.data[begin + i] = signed_id(hits[i].geometry_id.value);
-    for (std::size_t i = first; i < last; ++i)
-      ids.instance_id.data[begin + i] = signed_id(hits[i].instance_id.value);
-    for (std::size_t i = first; i < last; ++i) part.data[begin + i] = static_cast<std::int32_t>(hits[i].part);
-    for (std::size_t i = first; i < last; ++i) {
-      uv.data[2 * (begin + i)] = hits[i].u;
-      uv.data[2 * (begin + i) + 1] = hits[i].v;
+    const std::size_t count = std::min(kStep, hits.size() - first), row = begin + first;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Hit& hit = hits[first + i];
+      s.t[i] = hit.t;
+      s.primitive_id[i] = signed_id(hit.primitive_id.value);
+      s.geometry_id[i] = signed_id(hit.geometry_id.value);
+      s.instance_id[i] = signed_id(hit.instance_id.value);
+      s.part[i] = static_cast<std::int32_t>(hit.part);
+      s.uv[2 * i] = hit.u;
+      s.uv[2 * i + 1] = hit.v;
+      // Without a branch, because who hits is hard to foresee: a miss adds NaN to what is there.
+      const float nothing = hit.is_hit() ? 0.0f : kNan;
+      put(s.normal + 3 * i, hit.normal + splat(nothing));
+      put(s.position + 3 * i, rays[first + i].at(hit.t + nothing));
     }
-    // Without a branch, because who hits is hard to foresee: a miss adds NaN to what is there.
-    for (std::size_t i = first; i < last; ++i) {
-      const float nothing = hits[i].is_hit() ? 0.0f : kNan;
-      put(normal.data + 3 * (begin + i), hits[i].normal + splat(nothing));
-    }
-    for (std::size_t i = first; i < last; ++i) {
-      const float t_or_nan = hits[i].is_hit() ? hits[i].t : kNan;
-      put(position.data + 3 * (begin + i), rays[i].at(t_or_nan));
-    }
+    const auto copy = [&](auto& column, const auto* from, std::size_t width = 1) {
+      auto* const to = column.data + width * row;
+      if (is_large)
+        copy_past_cache(to, from, width * count);
+      else
+        std::memcpy(to, from, width * count * sizeof *from);
+    };
+    copy(t, s.t);
+    copy(ids.primitive_id, s.primitive_id);
+    copy(ids.geometry_id, s.geometry_id);
+    copy(ids.instance_id, s.instance_id);
+    copy(part, s.part);
+    copy(uv, s.uv, 2);
+    copy(normal, s.normal, 3);
+    copy(position, s.position, 3);
   }
+  if (is_large) finish_past_cache();
 }
 
 Points::Points(const Shape& leading) : shape(leading) {

@@ -72,6 +72,7 @@ struct HitColumns {
   Column<float> t, uv, normal, position;
   Ids ids;
   Column<std::int32_t> part;
+  bool is_large = false;  ///< Too large for a cache.
 
   HitColumns() = default;
   /// Room for `count` hits.
