@@ -125,38 +125,36 @@ HWY_INLINE void find_points(const TriangleBlock& block, Vec3 point, float limit,
   found.lanes = 0;
   for (std::size_t first = 0; first < kBlockWidth; first += kDoubles) {
     // The triangles' own boxes: no triangle is nearer.
-    Points corner[3];
-    VD box2 = hn::Zero(d);
-    const auto load = [&](int k, VD Points::*axis, VD c) {
+    VD x[3], y[3], z[3];  // of the three corners
+    const auto load = [&](int k, VD at, VD(&corner)[3]) {
       hn::Vec<DH> v[3];
       for (int i = 0; i < 3; ++i) {
         v[i] = hn::Load(half, block.v[i][k] + first);
-        corner[i].*axis = hn::PromoteTo(d, v[i]);
+        corner[i] = hn::PromoteTo(d, v[i]);
       }
       const VD lower = hn::PromoteTo(d, hn::Min(v[0], hn::Min(v[1], v[2])));
       const VD upper = hn::PromoteTo(d, hn::Max(v[0], hn::Max(v[1], v[2])));
-      const VD outside = hn::Max(hn::Max(hn::Sub(lower, c), hn::Sub(c, upper)), hn::Zero(d));
-      const VD square = hn::Mul(outside, outside);
-      box2 = k == 0 ? square : hn::Add(box2, square);
+      const VD outside = hn::Max(hn::Max(hn::Sub(lower, at), hn::Sub(at, upper)), hn::Zero(d));
+      return hn::Mul(outside, outside);
     };
-    load(0, &Points::x, p.x);
-    load(1, &Points::y, p.y);
-    load(2, &Points::z, p.z);
+    const VD square_x = load(0, p.x, x), square_y = load(1, p.y, y), square_z = load(2, p.z, z);
+    const VD box2 = hn::Add(hn::Add(square_x, square_y), square_z);
     if (hn::AllFalse(d, hn::Le(box2, limit2))) continue;
 
     // The distance is that of the point as it is returned, in float.
-    const Points exact = nearest_on_triangles(p, corner[0], corner[1], corner[2]);
-    const hn::Vec<DH> x = hn::DemoteTo(half, exact.x), y = hn::DemoteTo(half, exact.y),
-                      z = hn::DemoteTo(half, exact.z);
-    const Points to = difference({hn::PromoteTo(d, x), hn::PromoteTo(d, y), hn::PromoteTo(d, z)}, p);
+    const Points exact = nearest_on_triangles(p, {x[0], y[0], z[0]}, {x[1], y[1], z[1]}, {x[2], y[2], z[2]});
+    const hn::Vec<DH> near_x = hn::DemoteTo(half, exact.x), near_y = hn::DemoteTo(half, exact.y),
+                      near_z = hn::DemoteTo(half, exact.z);
+    const Points to =
+        difference({hn::PromoteTo(d, near_x), hn::PromoteTo(d, near_y), hn::PromoteTo(d, near_z)}, p);
     const VD square = hn::Max(dot_of(to, to), box2);
     const std::uint32_t maybe = mask_bits(d, hn::Le(square, limit2));
     if (maybe == 0) continue;
     const hn::Vec<DH> distance = hn::DemoteTo(half, hn::Sqrt(square));
     hn::Store(distance, half, found.distance + first);
-    hn::Store(x, half, found.position[0] + first);
-    hn::Store(y, half, found.position[1] + first);
-    hn::Store(z, half, found.position[2] + first);
+    hn::Store(near_x, half, found.position[0] + first);
+    hn::Store(near_y, half, found.position[1] + first);
+    hn::Store(near_z, half, found.position[2] + first);
     found.lanes |= (maybe & mask_bits(half, hn::Le(distance, hn::Set(half, limit)))) << first;
   }
 }
