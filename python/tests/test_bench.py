@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+import pytest
 
 from boxwood.bench import peers
 from boxwood.bench.__main__ import main
@@ -46,3 +47,37 @@ def test_a_peer_that_differs_gets_no_time():
     engines = [peers.Boxwood(*mesh), Liar(*mesh)]
     results = measure("closest hit", engines, vertices, 2000, 1, 1, 10, {})
     assert results["liar"].startswith("differs") and isinstance(results["boxwood"], tuple)
+
+
+def test_a_peer_that_would_take_all_memory_is_left_out_and_named(monkeypatch):
+    from boxwood.bench import memory
+    from boxwood.bench.__main__ import measure
+
+    if memory.room() == float("inf"):
+        pytest.skip("this system does not tell what memory a process holds")
+    monkeypatch.setattr(memory, "room", lambda: 500e6)
+    asked = []
+
+    class Hoarder(peers.Boxwood):
+        name = "hoarder"
+
+        def closest_point(self, rays, threads):
+            asked.append(len(rays[0]))
+            hoard = np.ones((len(rays[0]), 2**20 // 8))  # 1 MB for each
+            return super().closest_point(rays, threads) + 0 * hoard[:, 0]
+
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.3]], np.float32)
+    mesh = vertices, np.array([[0, 1, 2]], np.uint32)
+    results = measure("closest point", [peers.Boxwood(*mesh), Hoarder(*mesh)], vertices, 100_000, 1, 1, 1000, {})
+    assert results["hoarder"] == "needs 1 GB for 10^3"
+    assert isinstance(results["boxwood"], tuple)
+    assert max(asked) == 100
+
+
+def test_the_need_of_a_call_is_its_peak():
+    from boxwood.bench import memory
+
+    answer, need = memory.need_of(lambda: float(np.ones(200_000_000 // 8).sum()))
+    assert answer == 200_000_000 // 8
+    if memory.room() < float("inf"):
+        assert 190e6 < need < 260e6

@@ -3,7 +3,8 @@
 Every engine that is installed answers the same questions in one process, in turns, arrays in and arrays out; the median of
 the rounds is printed, in million rays per second, and behind each peer how many times as fast boxwood is (the median of the
 ratios within a round). Answers are compared first: where more than one ray in a thousand differs, no time is printed.
-embreex and trimesh work on one thread, whatever is asked; C++ is Scene::closest_hit, arrays left aside.
+An engine that would take longer than --patience, or half of the memory that is free, is left out, and so is what it answers
+otherwise. embreex and trimesh work on one thread, whatever is asked; C++ is Scene::closest_hit, arrays left aside.
 """
 
 import argparse
@@ -16,7 +17,7 @@ import time
 import numpy as np
 
 from .. import __version__, _core, cpu_target
-from . import peers, scenes
+from . import memory, peers, scenes
 
 MAX_DISAGREEMENT = 1e-3
 
@@ -27,7 +28,42 @@ def seconds(call):
     return time.perf_counter() - start
 
 
-def measure(question, engines, vertices, count, threads, rounds, patience, rates):
+class Cost:
+    """What a question costs an engine: measured for some rays, and so expected for ten times as many."""
+
+    FIRST = 10  # rays
+
+    def __init__(self, ask, engine, question, vertices, threads):
+        self.call = getattr(engine, ask)
+        self.prepare = lambda rays: engine.prepare(question, *rays)
+        self.vertices, self.threads = vertices, threads
+        self.count = self.seconds = self.bytes = 0
+
+    def ask(self, rays):
+        """The answer and the prepared rays; remembers what they took."""
+        prepared = self.prepare(rays)
+        start = time.perf_counter()
+        answer, self.bytes = memory.need_of(lambda: self.call(prepared, self.threads))
+        self.seconds, self.count = time.perf_counter() - start, len(rays[0])
+        return answer, prepared
+
+    def excuse(self, count, patience):
+        """Why `count` rays are not asked: nobody waits for minutes, and no machine is brought down. None when they are."""
+        if self.count == 0:  # the first call may build a tree
+            self.ask(scenes.random_rays(self.vertices, self.FIRST))
+            self.ask(scenes.random_rays(self.vertices, self.FIRST))
+        while True:
+            if self.seconds * min(count / self.count, 10) > patience:
+                return "slow"
+            need = self.bytes * min(count / self.count, 10)
+            if need > memory.room() / 2:
+                return f"needs {need / 2**30:.0f} GB for 10^{round(np.log10(min(count, 10 * self.count)))}"
+            if count <= 10 * self.count:
+                return None
+            self.ask(scenes.random_rays(self.vertices, 10 * self.count))
+
+
+def measure(question, engines, vertices, count, threads, rounds, patience, costs):
     """{engine: (rays per second, ratio)}; a string in place of the pair says why there is none."""
     ask = question.replace(" ", "_")
     origins, directions = scenes.random_rays(vertices, count)
@@ -37,17 +73,16 @@ def measure(question, engines, vertices, count, threads, rounds, patience, rates
     for engine in engines:
         if not hasattr(engine, ask):
             continue
-        # Nobody waits for minutes.
-        rate = rates.get((engine.name, question))
-        if rate and count / rate > patience:
-            results[engine.name] = "slow"
+        key = engine.name, question
+        if key not in costs:
+            costs[key] = Cost(ask, engine, question, vertices, threads)
+        excuse = costs[key].excuse(count, patience)
+        if excuse:
+            results[engine.name] = excuse
             if not running:
                 return results
             continue
-        rays = engine.prepare(question, origins, directions)
-        start = time.perf_counter()
-        answer = getattr(engine, ask)(rays, threads)
-        rates[engine.name, question] = count / (time.perf_counter() - start)
+        answer, rays = costs[key].ask((origins, directions))
         if ours is None:
             ours = answer
         else:
@@ -58,7 +93,7 @@ def measure(question, engines, vertices, count, threads, rounds, patience, rates
         running.append((engine, rays))
 
     # Short calls are repeated within a round, so that a round lasts at least some milliseconds.
-    repeats = {engine.name: max(1, int(0.005 * rates[engine.name, question] / count)) for engine, _ in running}
+    repeats = {engine.name: max(1, int(0.005 / costs[engine.name, question].seconds)) for engine, _ in running}
     times = {engine.name: [] for engine, _ in running}
     for _ in range(rounds):
         for engine, rays in running:
@@ -155,9 +190,9 @@ def main(arguments=None):
         print(f"\n{scenes.short_name(name)}: {len(triangles)} triangles", flush=True)
         for question in options.questions:
             for threads in dict.fromkeys(options.threads):
-                rates = {}
+                costs = {}
                 for count in sorted(int(n) for n in options.rays):
-                    results = measure(question, engines, vertices, count, threads, options.rounds, options.patience, rates)
+                    results = measure(question, engines, vertices, count, threads, options.rounds, options.patience, costs)
                     rows.append({"scene": scenes.short_name(name), "question": question, "rays": count, "threads": threads,
                                  "results": results})
                     print(table(rows[-1:], names).splitlines()[-1], flush=True)
