@@ -139,9 +139,7 @@ HWY_INLINE bool prepare(const Ray& ray, const Box3& bounds, float box_slack, Ker
   // The slabs: see core/prepared_ray.h.
   constexpr float u = 0x1p-24f;
   const V4 least = hn::Mul(d_max, hn::Set(d, 0x1p-30f)), tiny = hn::Set(d, 0x1p-140f);
-  V4 r = hn::Div(hn::Set(d, 1.0f), dir);  // rarely to no use, but sooner at hand
-  if (HWY_UNLIKELY(!hn::AllTrue(d, hn::Ge(abs_dir, without_fourth(least)))))
-    r = hn::Div(hn::Set(d, 1.0f), hn::CopySign(hn::Max(abs_dir, least), dir));
+  const V4 r = hn::Div(hn::Set(d, 1.0f), hn::CopySign(hn::Max(abs_dir, least), dir));
   const V4 error = hn::Add(hn::Mul(hn::Set(d, 12 * u), reach), hn::Mul(hn::Set(d, 8 * u), abs_o));
   const V4 slack = hn::Add(hn::Mul(hn::Abs(r), hn::Add(error, tiny)), tiny);
   const V4 wide_slack = hn::Add(hn::Mul(slack, hn::Set(d, box_slack)), hn::Set(d, 0x1p-120f));
