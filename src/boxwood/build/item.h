@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "boxwood/build/lanes.h"
-#include "boxwood/build/raw_array.h"
+#include "boxwood/core/raw_array.h"
 #include "boxwood/core/box.h"
 #include "boxwood/core/id.h"
 #include "boxwood/core/parallel.h"

@@ -4,7 +4,7 @@
 #include <queue>
 
 #include "boxwood/build/item.h"
-#include "boxwood/build/raw_array.h"
+#include "boxwood/core/raw_array.h"
 
 namespace boxwood {
 namespace {
@@ -83,7 +83,9 @@ class Workshop {
   Bvh finish(int max_depth) const {
     Bvh out;
     out.nodes.reserve(nodes_.size());
+    advise_huge_pages(out.nodes.data(), nodes_.size() * sizeof(BvhNode));
     out.prim_ids.reserve(prim_ids_.size());
+    advise_huge_pages(out.prim_ids.data(), prim_ids_.size() * sizeof(PrimId));
     struct Place {
       std::uint32_t index;
       int depth;

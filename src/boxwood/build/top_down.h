@@ -24,7 +24,7 @@
 #include "boxwood/build/item.h"
 #include "boxwood/build/meter.h"
 #include "boxwood/build/options.h"
-#include "boxwood/build/raw_array.h"
+#include "boxwood/core/raw_array.h"
 #include "boxwood/tree/bvh.h"
 
 namespace boxwood {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "boxwood/core/raw_array.h"
 
 namespace boxwood {
 namespace {
@@ -26,11 +27,11 @@ template <bool kMovesValues, class Key>
 void sort_by_digits(std::span<Key> keys, std::span<std::uint32_t> values, int first_bit, int end_bit,
                     Executor& executor) {
   const std::size_t n = keys.size(), blocks = (n + kBlock - 1) / kBlock;
-  const auto other_keys = std::make_unique_for_overwrite<Key[]>(n);
-  const auto other_values = std::make_unique_for_overwrite<std::uint32_t[]>(values.size());
+  const RawArray<Key> other_keys(n);
+  const RawArray<std::uint32_t> other_values(values.size());
   std::vector<Counts> counts(blocks);
-  std::span<Key> from_keys = keys, to_keys{other_keys.get(), n};
-  std::span<std::uint32_t> from_values = values, to_values{other_values.get(), values.size()};
+  std::span<Key> from_keys = keys, to_keys{other_keys.data(), n};
+  std::span<std::uint32_t> from_values = values, to_values{other_values.data(), values.size()};
 
   for (int shift = first_bit; shift < end_bit; shift += kDigitBits) {
     // Count the digits of each block.
@@ -69,10 +70,11 @@ void sort_by_digits(std::span<Key> keys, std::span<std::uint32_t> values, int fi
   }
 
   // An odd number of moves leaves the result in the copy.
-  if (from_keys.data() != keys.data()) {
-    std::copy(from_keys.begin(), from_keys.end(), keys.begin());
-    std::copy(from_values.begin(), from_values.end(), values.begin());
-  }
+  if (from_keys.data() == keys.data()) return;
+  parallel_for(executor, 0, n, kBlock, [&](std::size_t i) {
+    keys[i] = from_keys[i];
+    if constexpr (kMovesValues) values[i] = from_values[i];
+  });
 }
 
 void check_sizes(std::size_t keys, std::size_t values) {

@@ -1,7 +1,9 @@
 #include "boxwood/scene/description.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 namespace boxwood {
@@ -37,17 +39,26 @@ bool is_usable(Vec3 p) {
              ", but there are " + std::to_string(vertices) + " vertices");
 }
 
-void check_mesh(const TriangleMesh& mesh, const std::string& name) {
+void check_mesh(const TriangleMesh& mesh, const std::string& name, Executor& executor) {
   // Look at all without a branch, which the compiler turns into vectors; only a failure is looked for.
-  unsigned is_bad = 0;
-  for (const Vec3& p : mesh.positions)
-    is_bad |= unsigned(!(std::abs(p.x) <= kMaxCoordinate)) | unsigned(!(std::abs(p.y) <= kMaxCoordinate)) |
-              unsigned(!(std::abs(p.z) <= kMaxCoordinate));
+  constexpr std::size_t kGrain = 1 << 16;
+  std::atomic<bool> is_bad = false;
+  executor.for_range(0, mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    unsigned found = 0;
+    for (const Vec3& p : std::span(mesh.positions).subspan(begin, end - begin))
+      found |= unsigned(!(std::abs(p.x) <= kMaxCoordinate)) | unsigned(!(std::abs(p.y) <= kMaxCoordinate)) |
+               unsigned(!(std::abs(p.z) <= kMaxCoordinate));
+    if (found) is_bad = true;
+  });
   if (is_bad) refuse_vertex(mesh, name);
-  std::uint32_t largest = 0;
-  for (const auto& [i, j, k] : mesh.indices) largest = std::max(std::max(largest, i), std::max(j, k));
   const std::size_t vertices = mesh.positions.size();
-  if (!mesh.indices.empty() && largest >= vertices) refuse_index(mesh, name);
+  executor.for_range(0, mesh.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t largest = 0;
+    for (const auto& [i, j, k] : std::span(mesh.indices).subspan(begin, end - begin))
+      largest = std::max(std::max(largest, i), std::max(j, k));
+    if (largest >= vertices) is_bad = true;
+  });
+  if (is_bad) refuse_index(mesh, name);
   const auto check_length = [&](std::size_t length, const char* what) {
     if (length != 0 && length != vertices)
       fail(name + " has " + std::to_string(length) + " " + what + ", expected none or one for each of the " +
@@ -155,7 +166,7 @@ std::vector<Instance> placed_instances(const SceneDesc& desc) {
   return placed;
 }
 
-void check(const SceneDesc& desc) {
+void check(const SceneDesc& desc, Executor& executor) {
   const auto check_material = [&](MaterialId id, const std::string& name) {
     if (id.is_valid() && id.value >= desc.materials.size())
       fail(name + " has material " + std::to_string(id.value) + ", but there are " +
@@ -168,7 +179,7 @@ void check(const SceneDesc& desc) {
     if (!geometry.name.empty()) name += " '" + geometry.name + "'";
 
     if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
-      check_mesh(*mesh, name);
+      check_mesh(*mesh, name, executor);
     } else {
       std::visit(
           [&](const auto& shapes) {

@@ -16,6 +16,7 @@
 
 #include "boxwood/core/affine.h"
 #include "boxwood/core/id.h"
+#include "boxwood/core/parallel.h"
 #include "boxwood/scene/image.h"
 #include "boxwood/shape/cuboid.h"
 #include "boxwood/shape/disk.h"
@@ -259,7 +260,7 @@ std::vector<Instance> placed_instances(const SceneDesc& desc);
 
 /// Throws std::invalid_argument that names the first thing that is wrong: a vertex that is not finite or
 /// above 2^126, an index out of range, an array of the wrong length, an id of nothing, a transform that
-/// cannot be inverted.
-void check(const SceneDesc& desc);
+/// cannot be inverted. The executor shows in the time only.
+void check(const SceneDesc& desc, Executor& executor = serial_executor());
 
 }  // namespace boxwood

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "boxwood/build/build.h"
-#include "boxwood/build/raw_array.h"
+#include "boxwood/core/raw_array.h"
 #include "boxwood/shape/instance.h"
 #include "boxwood/tree/collapse.h"
 
@@ -134,7 +134,7 @@ std::string closest_point_obstacle(const Geometry& geometry, bool under_similari
 std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Executor& executor = options.executor ? *options.executor : default_executor();
-  check(desc);
+  check(desc, executor);
 
   auto parts = std::make_unique<Scene::Parts>();
   parts->desc = std::move(desc);

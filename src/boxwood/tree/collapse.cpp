@@ -1,9 +1,10 @@
 #include "boxwood/tree/collapse.h"
 
 #include <algorithm>
-#include <memory>
 #include <span>
 #include <stdexcept>
+
+#include "boxwood/core/raw_array.h"
 
 namespace boxwood {
 namespace {
@@ -32,10 +33,7 @@ template <int W>
 class Collapser {
  public:
   Collapser(const Bvh& bvh, Executor& executor, WideCost cost)
-      : bvh_(bvh),
-        executor_(executor),
-        cost_(cost),
-        plans_(std::make_unique_for_overwrite<Plan<W>[]>(bvh.nodes.size())) {}
+      : bvh_(bvh), executor_(executor), cost_(cost), plans_(bvh.nodes.size()) {}
 
   WideBvh<W> run() {
     WideBvh<W> wide;
@@ -295,7 +293,7 @@ class Collapser {
   const Bvh& bvh_;
   Executor& executor_;
   const WideCost cost_;
-  const std::unique_ptr<Plan<W>[]> plans_;  ///< A plan for each binary node.
+  const RawArray<Plan<W>> plans_;  ///< A plan for each binary node.
   std::vector<bool> is_top_;
 };
 

@@ -1,4 +1,4 @@
-// raw_array.h: where does a builder keep a million things that it has not made yet?
+// raw_array.h: where do a million things go that are not made yet?
 //
 // In memory that nobody has written to. A std::vector writes all of it once before the first use, on one
 // thread, which for large scenes is a good part of the time that a build may take. Here a page is touched

@@ -1,4 +1,4 @@
-#include "boxwood/build/raw_array.h"
+#include "boxwood/core/raw_array.h"
 
 #include <cstdint>
 
