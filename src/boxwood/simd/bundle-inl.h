@@ -20,6 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
 inline constexpr int kBundle = HWY_MAX_BYTES / 4 < 16 ? HWY_MAX_BYTES / 4 : 16;  // rays
+inline constexpr std::size_t kFetchedAhead = 3;                                  // children of a node
 
 using DB = hn::FixedTag<float, kBundle>;
 using DIB = hn::FixedTag<std::int32_t, kBundle>;
@@ -221,6 +222,11 @@ class Bundle {
     hn::StoreU(sorted, di, keys);
     hn::StoreU(hn::Or(hn::And(sorted, hn::Set(di, 7)), hn::Set(di, static_cast<std::int32_t>(ref))), di,
                refs);
+
+    // The other bundle's turn comes first: time to fetch what is next.
+    const std::int32_t* children = children_of<Layout>(node_at(pool, ref));
+    for (std::size_t i = count > kFetchedAhead ? count - kFetchedAhead : 0; i < count; ++i)
+      prefetch_lines<Layout::kNodeLines>(node_at(pool, static_cast<std::uint32_t>(children[refs[i] & 7])));
     return count;
   }
 

@@ -143,8 +143,10 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
   while (true) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
-      const Slabs slabs = box_ray.template cross<Layout>(node, way.limit(hit.t));
       const std::int32_t* children = children_of<Layout>(node);
+      __builtin_prefetch(
+          children);  // on a line of their own, which is asked for only when the planes are known
+      const Slabs slabs = box_ray.template cross<Layout>(node, way.limit(hit.t));
       const std::uint32_t bits = mask_bits(di, slabs.enters);
       if (bits != 0) {
         if ((bits & (bits - 1)) == 0) {
