@@ -5,6 +5,10 @@
 #include <cstring>
 #include <limits>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 #include <nanobind/stl/string.h>
 
 #include "docstrings.h"
@@ -49,6 +53,20 @@ std::string describe(const char* type, const Shape& shape, const float* t, const
 
 }  // namespace
 
+namespace {
+
+/// Lets the system take the pages of a block when it is short of them; those that it leaves need no clearing.
+void lend_to_system(simd::HugeBuffer& block) {
+#if defined(__linux__) && defined(MADV_FREE)
+  constexpr std::size_t kLargestPage = std::size_t(64) << 10;
+  madvise(block.data(), block.size() / kLargestPage * kLargestPage, MADV_FREE);
+#else
+  (void)block;
+#endif
+}
+
+}  // namespace
+
 Block allocate_block(std::size_t size) {
   constexpr std::size_t kMinSpareBytes = std::size_t(1) << 20;  // below, memory is cheap
   size = std::max<std::size_t>(size, 64);
@@ -60,7 +78,10 @@ Block allocate_block(std::size_t size) {
   if (!buffer || buffer->size() < size || buffer->size() / 2 > size)
     buffer = std::make_unique<simd::HugeBuffer>(size);
   return Block(buffer.release(), [](simd::HugeBuffer* old) {
-    if (old->size() <= kMaxSpareBytes) old = spare.exchange(old);
+    if (old->size() <= kMaxSpareBytes) {
+      lend_to_system(*old);
+      old = spare.exchange(old);
+    }
     delete old;
   });
 }

@@ -21,8 +21,13 @@ namespace boxwood::python {
 using Block = std::shared_ptr<simd::HugeBuffer>;
 
 /// A block of so many bytes, perhaps one that an earlier result has left: clearing fresh pages costs a tenth
-/// of the time in which a million rays are answered. One block of at most kMaxSpareBytes is kept for that.
+/// of the time in which a million rays are answered, and more where the system is short of them. One block of
+/// at most kMaxSpareBytes is kept for that, where the system can take its pages back while nobody uses them.
+#if defined(__linux__)
+constexpr std::size_t kMaxSpareBytes = std::size_t(1) << 30;
+#else
 constexpr std::size_t kMaxSpareBytes = std::size_t(64) << 20;
+#endif
 Block allocate_block(std::size_t size);
 
 /// Lays columns one behind the other, each on a cache line of its own.
