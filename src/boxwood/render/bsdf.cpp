@@ -1,5 +1,7 @@
 #include "boxwood/render/bsdf.h"
 
+#include <bit>
+
 #include "boxwood/render/fresnel.h"
 #include "boxwood/render/sheen.h"
 
@@ -35,11 +37,6 @@ Bsdf::Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing)
 
   set_shares();
   set_chances();
-  for (int lobe = 0; lobe < kLobes; ++lobe)
-    if (chance_[lobe] > 0 && !is_perfect(Lobe(lobe))) {
-      has_spread_ = true;
-      spreads_behind_ |= lobe == through || lobe == glass;
-    }
 }
 
 void Bsdf::set_shares() {
@@ -97,6 +94,13 @@ void Bsdf::set_shares() {
 
 /// Lobes are drawn in proportion to the light that takes that way, roughly.
 void Bsdf::set_chances() {
+  // Most surfaces have one lobe.
+  if (look_.kind == Kind::matte) {
+    if (!(max_component(diffuse_) > 0)) return;
+    chance_[diffuse] = 1;
+    sampled_ = spread_ = 1u << diffuse;
+    return;
+  }
   const float z = outgoing_.z, reflected = boundary_ > 0 ? boundary_ * boundary_albedo(z) : 0;
   chance_[coat] = share_[coat] > 0 ? share_[coat] * coat_albedo(z) : 0;
   if (share_[sheen] > 0)
@@ -113,8 +117,12 @@ void Bsdf::set_chances() {
   }
   float sum = 0;
   for (const float chance : chance_) sum += chance;
-  if (sum > 0)
-    for (float& chance : chance_) chance /= sum;
+  for (int lobe = 0; lobe < kLobes; ++lobe) {
+    if (!(chance_[lobe] > 0)) continue;
+    chance_[lobe] /= sum;
+    sampled_ |= 1u << lobe;
+    if (!is_perfect(Lobe(lobe))) spread_ |= 1u << lobe;
+  }
 }
 
 bool Bsdf::is_perfect(Lobe lobe) const {
@@ -180,8 +188,8 @@ BsdfValue Bsdf::evaluate(Vec3 incoming) const {
 
 BsdfValue Bsdf::evaluate_local(Vec3 incoming) const {
   BsdfValue sum;
-  for (int lobe = 0; lobe < kLobes; ++lobe) {
-    if (!(chance_[lobe] > 0) || is_perfect(Lobe(lobe))) continue;
+  for (unsigned left = spread_; left != 0; left &= left - 1) {
+    const int lobe = std::countr_zero(left);
     const Scattered part = evaluate_lobe(Lobe(lobe), incoming);
     sum.value += part.value * share_[lobe];
     sum.pdf += part.pdf * chance_[lobe];
@@ -271,12 +279,11 @@ Bsdf::Scattered Bsdf::evaluate_glass(Vec3 incoming) const {
 
 std::optional<BsdfSample> Bsdf::sample(float choice, Vec2 u) const {
   // Pick a lobe, and stretch what is left of the choice.
-  int lobe = 0, last = -1;
-  for (; lobe < kLobes; ++lobe) {
-    if (!(chance_[lobe] > 0)) continue;
-    last = lobe;
-    if (choice < chance_[lobe]) break;
-    choice -= chance_[lobe];
+  int last = -1;
+  for (unsigned left = sampled_; left != 0; left &= left - 1) {
+    last = std::countr_zero(left);
+    if (choice < chance_[last]) break;
+    choice -= chance_[last];
   }
   if (last < 0) return std::nullopt;
   choice = min(max(choice / chance_[last], 0.0f), 0x1.fffffep-1f);

@@ -44,9 +44,9 @@ class Bsdf {
   Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing);
 
   /// Whether there is a spread lobe, which light sources can be sampled for.
-  bool has_spread() const { return has_spread_; }
+  bool has_spread() const { return spread_ != 0; }
   /// Whether one of them reaches behind the surface.
-  bool spreads_behind() const { return spreads_behind_; }
+  bool spreads_behind() const { return (spread_ & (1u << through | 1u << glass)) != 0; }
 
   BsdfValue evaluate(Vec3 incoming) const;
 
@@ -83,10 +83,10 @@ class Bsdf {
   Vec3 to_world(Vec3 local) const { return x_ * local.x + y_ * local.y + z_ * local.z; }
 
   const Look& look_;
-  bool is_inside_;  // seen from the back of the geometric normal
-  bool has_spread_ = false, spreads_behind_ = false;
-  Vec3 geometric_;  // towards the viewer
-  Vec3 x_, y_, z_;  // the shading frame, z towards the viewer
+  bool is_inside_;                     // seen from the back of the geometric normal
+  unsigned sampled_ = 0, spread_ = 0;  // a bit for each lobe that is sampled at all, and that is spread
+  Vec3 geometric_;                     // towards the viewer
+  Vec3 x_, y_, z_;                     // the shading frame, z towards the viewer
   Vec3 outgoing_world_;
   Vec3 outgoing_;       // in the shading frame
   float eta_;           // glass: the index of refraction of the other side over that of this side

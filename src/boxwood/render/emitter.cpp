@@ -11,10 +11,15 @@ namespace {
 
 constexpr std::uint32_t kNoEmitter = 0xffffffffu;
 
-/// A bound of the rounding of a point that was put together from a corner and two edges, or from a middle and
-/// a radius, and of a transform.
-Vec3 position_error(Vec3 parts) {
-  return abs(parts) * 0x1p-19f;
+/// How far from a surface a ray towards it has to end, or it might hit the surface. The point was put
+/// together from a corner and two edges, or from a middle and a radius, and transformed; `parts` bounds the
+/// sum of the sizes of all that was added.
+float clearance_of(Vec3 parts, Vec3 normal) {
+  Surface point{};
+  point.position = parts;
+  point.error = parts * 0x1p-19f;
+  point.normal = normal;
+  return point.clearance();
 }
 
 std::uint32_t emitters_per_part(const Shapes& shapes) {
@@ -177,6 +182,7 @@ void EmitterGroup::finish(Emitter emitter, const Material& material, Box3 box) {
   emitter.normal = normalize(emitter.normal);
   // Shapes that cannot be hit cannot shine either.
   if (!(emitter.area > 0) || !std::isfinite(emitter.area) || !is_finite(emitter.normal)) emitter.area = 0;
+  emitter.clearance = clearance_of(abs(emitter.a) + abs(emitter.x) + abs(emitter.y), emitter.normal);
   emitters_.push_back(emitter);
   boxes_.push_back(box);
 }
@@ -189,9 +195,9 @@ EmitterPoint EmitterGroup::sample(std::size_t index, Vec3 receiver, Vec2 u) cons
                        : emitter.kind == Emitter::Kind::parallelogram ? u
                                                                       : uniform_disk(u);
   EmitterPoint point{};
-  point.surface.position = emitter.a + emitter.x * weights.x + emitter.y * weights.y;
-  point.surface.error = position_error(abs(emitter.a) + abs(emitter.x) + abs(emitter.y));
-  point.surface.normal = point.surface.shading_normal = emitter.normal;
+  point.position = emitter.a + emitter.x * weights.x + emitter.y * weights.y;
+  point.normal = emitter.normal;
+  point.clearance = emitter.clearance;
   point.radiance = emitter.texture.is_valid() ? textured_radiance(emitter, weights) : emitter.radiance;
   point.emits_from_both_sides = emitter.emits_from_both_sides;
   point.pdf_area = 1 / emitter.area;
@@ -219,13 +225,12 @@ EmitterPoint EmitterGroup::sample_sphere(const Emitter& sphere, Vec3 receiver, V
       is_outside ? Frame(normalize(to_receiver)).to_world(uniform_cone(u, 1)) : uniform_cone(u, 2);
 
   EmitterPoint point{};
-  point.surface.position = world_from_object_.point(sphere.a + normal * sphere.radius);
+  point.position = world_from_object_.point(sphere.a + normal * sphere.radius);
+  point.normal = normalize(transform_normal(object_from_world_, normal));
   const Vec3 reach = abs(sphere.a) + splat(sphere.radius);
-  point.surface.error =
-      position_error(abs(world_from_object_.x) * reach.x + abs(world_from_object_.y) * reach.y +
-                     abs(world_from_object_.z) * reach.z + abs(world_from_object_.origin));
-  point.surface.normal = point.surface.shading_normal =
-      normalize(transform_normal(object_from_world_, normal));
+  point.clearance = clearance_of(abs(world_from_object_.x) * reach.x + abs(world_from_object_.y) * reach.y +
+                                     abs(world_from_object_.z) * reach.z + abs(world_from_object_.origin),
+                                 point.normal);
   point.radiance = sphere.radiance;
   point.emits_from_both_sides = sphere.emits_from_both_sides;
   point.pdf_area = sphere_density(sphere, normal, receiver);

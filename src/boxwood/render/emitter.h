@@ -22,7 +22,8 @@ inline float brightness(Vec3 radiance) {
 
 /// A point of a light and its density.
 struct EmitterPoint {
-  Surface surface;  ///< position, error, normal.
+  Vec3 position, normal;
+  float clearance;  ///< How far along the normal, to one side or the other, a ray to it has to end.
   Vec3 radiance;    ///< From the front side.
   bool emits_from_both_sides;
   float pdf_area;  ///< Per area.
@@ -57,6 +58,7 @@ class EmitterGroup {
     Vec3 radiance;
     float area = 0;           // world space; of a squeezed sphere only roughly
     float mean_radiance = 0;  // brightness
+    float clearance = 0;      // of all but spheres
     TextureId texture;        // of the radiance; triangles only
     std::array<Vec2, 3> uvs{};
   };

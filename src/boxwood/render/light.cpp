@@ -179,16 +179,16 @@ std::optional<LightSample> Lights::sample_near(const Near& light, const Surface&
   switch (light.kind) {
     case Near::Kind::emitter: {
       const EmitterPoint point = groups_[light.group].sample(light.index, surface.position, u);
-      const Vec3 to_light = point.surface.position - surface.position;
+      const Vec3 to_light = point.position - surface.position;
       const float distance_squared = length_squared(to_light);
       sample.direction = to_light / std::sqrt(distance_squared);
-      const float cosine = -dot(sample.direction, point.surface.normal);
+      const float cosine = -dot(sample.direction, point.normal);
       if (!(point.emits_from_both_sides ? std::fabs(cosine) > 0 : cosine > 0)) return std::nullopt;
       sample.radiance = point.radiance;
       sample.pdf *= point.pdf_area * distance_squared / std::fabs(cosine);
       // End just before the light itself: where a ray from the light would start.
-      sample.shadow_ray =
-          ray_to_point(surface, sample.direction, point.surface.spawn(-sample.direction).origin);
+      const float clearance = cosine > 0 ? point.clearance : -point.clearance;
+      sample.shadow_ray = ray_to_point(surface, sample.direction, point.position + point.normal * clearance);
       break;
     }
     case Near::Kind::point:

@@ -16,12 +16,6 @@ float sine_of(float cosine) {
   return std::sqrt(max(0.0f, 1 - cosine * cosine));
 }
 
-/// cos(max(0, a - b)) for two angles in [0, pi], by their cosines.
-float cosine_of_difference(float cos_a, float cos_b) {
-  if (cos_a > cos_b) return 1;
-  return cos_a * cos_b + sine_of(cos_a) * sine_of(cos_b);
-}
-
 /// Bounds of both: the box around both, and a cone around both cones.
 LightBounds join(const LightBounds& a, const LightBounds& b) {
   if (!(a.strength > 0)) return b;
@@ -71,52 +65,147 @@ double cost(const LightBounds& b) {
   return b.strength * std::max(solid, 1e-6) * area;
 }
 
-/// An estimate of the irradiance that the lights could cause at `from` at most.
-float importance_of(const LightBounds& b, const Receiver& from) {
-  const Vec3 to_light = b.box.center() - from.position;
-  const float radius_squared = 0.25f * length_squared(b.box.extent());
-  const float distance_squared = length_squared(to_light);
-  // Inside the bounding sphere the distance to its middle says nothing, and neither do directions.
-  const bool is_inside = distance_squared <= radius_squared;
-  const float cos_reach = is_inside ? -1 : std::sqrt(max(0.0f, 1 - radius_squared / distance_squared));
-  const Vec3 direction = distance_squared > 0 ? to_light / std::sqrt(distance_squared) : b.axis;
+constexpr std::uint32_t kNoNode = 0xffffffffu;
 
-  float result = b.strength / max(max(distance_squared, radius_squared), 1e-30f);
-  float cos_facing = dot(b.axis, -direction);
-  if (b.is_two_sided) cos_facing = std::fabs(cos_facing);
-  const float cos_away = cosine_of_difference(clamp_cosine(cos_facing), b.cos_facing);
-  const float cos_emitted = cosine_of_difference(cos_away, cos_reach);
-  if (cos_emitted <= b.cos_spread) return 0;
-  // Lights that shine all around do not fall off with the angle.
-  if (b.cos_facing > -1) result *= max(cos_emitted, 0.05f);
-
-  if (length_squared(from.normal) > 0) {
-    const float cos_in = cosine_of_difference(clamp_cosine(dot(direction, from.normal)), cos_reach);
-    if (!(cos_in > 0)) return 0;
-    result *= cos_in;
-  }
-  return result;
+/// Which child a number below the sum of all weights falls to; and what is left of it there, in [0, 1).
+template <class Lanes>
+int pick(const Lanes& weights, float& number) {
+  Lanes until;
+  float sum = 0;
+  for (std::size_t lane = 0; lane < weights.size(); ++lane) until[lane] = sum += weights[lane];
+  int lane = 0;
+  for (const float end : until) lane += end <= number;
+  // Rounding may have put it past the last.
+  const int count = static_cast<int>(weights.size());
+  if (lane == count) do
+      --lane;
+    while (!(weights[lane] > 0));
+  const float left = (number - (lane > 0 ? until[lane - 1] : 0)) / weights[lane];
+  number = min(max(left, 0.0f), 0x1.fffffep-1f);
+  return lane;
 }
 
 }  // namespace
 
-LightTree::LightTree(const std::vector<LightBounds>& lights) : leaf_of_light_(lights.size()) {
+/// A node of the tree as it is built: two children, or a light.
+struct LightTree::BinaryNode {
+  LightBounds bounds;
+  std::uint32_t second = 0;  // the first child follows the node; 0: a leaf
+  std::uint32_t light = 0;   // leaf
+};
+
+void LightTree::Node::set(int lane, const LightBounds& b) {
+  const Vec3 center = b.box.center();
+  x[lane] = center.x;
+  y[lane] = center.y;
+  z[lane] = center.z;
+  radius[lane] = 0.5f * length(b.box.extent());
+  axis_x[lane] = b.axis.x;
+  axis_y[lane] = b.axis.y;
+  axis_z[lane] = b.axis.z;
+  cos_facing[lane] = b.cos_facing;
+  sin_facing[lane] = sine_of(b.cos_facing);
+  // A bound of the angle is exact at 90 degrees only: narrower lights that take up room count up to there.
+  cos_spread[lane] = radius[lane] > 0 ? min(b.cos_spread, 0.0f) : b.cos_spread;
+  strength[lane] = b.strength;
+  turned[lane] = b.is_two_sided ? -1.0f : 1.0f;
+  least_falloff[lane] = b.cos_facing > -1 ? 0.05f : 1.0f;
+}
+
+/// The estimate of the irradiance is strength / distance^2, by the cosines at the light and at the surface.
+/// Seen from the surface the lights are within an angle r of the middle of their sphere, so an angle t may be
+/// t - r in truth. For its cosine stands cos t + sin r: above 0 exactly where cos(t - r) is, and no less
+/// where that is below 0.
+float LightTree::Node::weigh(const Receiver& from, Lanes& weights) const {
+  const Vec3 p = from.position, n = from.normal;
+  const float least_cos_in = length_squared(n) > 0 ? 0.0f : 1.0f;
+  // Selects in place of branches, so that the compiler works on several lanes at once.
+  Lanes out;
+  for (int i = 0; i < kWidth; ++i) {
+    const float to_x = x[i] - p.x, to_y = y[i] - p.y, to_z = z[i] - p.z;
+    const float distance_squared = max(to_x * to_x + to_y * to_y + to_z * to_z, 1e-30f);
+    const float per_distance = 1 / std::sqrt(distance_squared);
+    // Inside the sphere the distance to its middle says nothing, and neither do directions.
+    const float sin_reach = radius[i] * per_distance;
+    const float reach = sin_reach < 1 ? sin_reach : 2.0f;
+
+    // From where the lights face towards the surface, less their cone.
+    const float along = -(axis_x[i] * to_x + axis_y[i] * to_y + axis_z[i] * to_z) * per_distance;
+    const float cos_axis = max(min(max(along, turned[i] * along), 1.0f), -1.0f);
+    const float outside_cone = cos_axis * cos_facing[i] + std::sqrt(1 - cos_axis * cos_axis) * sin_facing[i];
+    const float cos_away = cos_axis > cos_facing[i] ? 1.0f : outside_cone;
+    const float cos_emitted = min(cos_away + reach, 1.0f);
+
+    const float cos_normal = (n.x * to_x + n.y * to_y + n.z * to_z) * per_distance;
+    const float cos_in = max(min(cos_normal + reach, 1.0f), least_cos_in);
+
+    const float irradiance = strength[i] / max(distance_squared, radius[i] * radius[i]);
+    const float weight = irradiance * (max(cos_emitted, least_falloff[i]) * cos_in);
+    out[i] = cos_emitted > cos_spread[i] ? weight : 0.0f;
+  }
+  weights = out;
+  const auto pair = [&out](int i) { return out[i] + out[i + kWidth / 2]; };
+  return (pair(0) + pair(2)) + (pair(1) + pair(3));
+}
+
+LightTree::LightTree(const std::vector<LightBounds>& lights)
+    : leaf_of_light_(lights.size(), Leaf{kNoNode, 0}) {
   std::vector<std::uint32_t> order(lights.size());
   std::iota(order.begin(), order.end(), 0u);
   std::erase_if(order, [&](std::uint32_t i) { return !(lights[i].strength > 0); });
-  nodes_.reserve(2 * order.size());
-  if (!order.empty()) build(lights, order.data(), order.data() + order.size(), 0);
+  if (order.empty()) return;
+  std::vector<BinaryNode> nodes;
+  nodes.reserve(2 * order.size());
+  build(lights, order.data(), order.data() + order.size(), nodes);
+  widen(nodes, 0);
+}
+
+/// Makes a node of the lights below `index`: opens the child that costs most until all lanes are taken.
+std::uint32_t LightTree::widen(const std::vector<BinaryNode>& nodes, std::uint32_t index) {
+  std::array<std::uint32_t, kWidth> children{index};
+  int count = 1;
+  while (count < kWidth) {
+    int dearest = -1;
+    double highest = -1;
+    for (int i = 0; i < count; ++i) {
+      const BinaryNode& child = nodes[children[i]];
+      const double price = child.second != 0 ? cost(child.bounds) : -1;
+      if (price <= highest) continue;
+      highest = price;
+      dearest = i;
+    }
+    if (dearest < 0) break;
+    const std::uint32_t opened = children[dearest];
+    children[dearest] = opened + 1;
+    children[count++] = nodes[opened].second;
+  }
+
+  const auto made = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  for (int lane = 0; lane < count; ++lane) {
+    const BinaryNode& child = nodes[children[lane]];
+    nodes_[made].set(lane, child.bounds);
+    if (child.second == 0) {
+      nodes_[made].child[lane] = child.light;
+      leaf_of_light_[child.light] = {made, static_cast<std::uint32_t>(lane)};
+      continue;
+    }
+    const std::uint32_t below = widen(nodes, children[lane]);
+    nodes_[made].child[lane] = below;
+    nodes_[made].is_node |= 1u << lane;
+    nodes_[below].parent = made;
+    nodes_[below].lane_in_parent = static_cast<std::uint32_t>(lane);
+  }
+  return made;
 }
 
 std::uint32_t LightTree::build(const std::vector<LightBounds>& lights, std::uint32_t* begin,
-                               std::uint32_t* end, std::uint32_t parent) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  nodes_[index].parent = parent;
+                               std::uint32_t* end, std::vector<BinaryNode>& nodes) {
+  const auto index = static_cast<std::uint32_t>(nodes.size());
+  nodes.emplace_back();
   if (end - begin == 1) {
-    nodes_[index].bounds = lights[*begin];
-    nodes_[index].light = *begin;
-    leaf_of_light_[*begin] = index;
+    nodes[index].bounds = lights[*begin];
+    nodes[index].light = *begin;
     return index;
   }
 
@@ -158,51 +247,47 @@ std::uint32_t LightTree::build(const std::vector<LightBounds>& lights, std::uint
                                    [&](std::uint32_t light) { return bin_of(light, best_axis) < best_bin; });
   if (middle == begin || middle == end) middle = begin + (end - begin) / 2;
 
-  build(lights, begin, middle, index);
-  const std::uint32_t second = build(lights, middle, end, index);
-  nodes_[index].second = second;
-  nodes_[index].bounds = join(nodes_[index + 1].bounds, nodes_[second].bounds);
+  build(lights, begin, middle, nodes);
+  const std::uint32_t second = build(lights, middle, end, nodes);
+  nodes[index].second = second;
+  nodes[index].bounds = join(nodes[index + 1].bounds, nodes[second].bounds);
   return index;
 }
 
 float LightTree::importance(const Receiver& from) const {
-  return is_empty() ? 0 : importance_of(nodes_[0].bounds, from);
+  Lanes weights;
+  return is_empty() ? 0 : nodes_[0].weigh(from, weights);
 }
 
 std::optional<LightTree::Choice> LightTree::choose(const Receiver& from, float& choice) const {
   if (is_empty()) return std::nullopt;
-  std::uint32_t index = 0;
   float probability = 1;
-  while (nodes_[index].second != 0) {
-    const float first = importance_of(nodes_[index + 1].bounds, from),
-                second = importance_of(nodes_[nodes_[index].second].bounds, from);
-    const float sum = first + second;
+  for (std::uint32_t index = 0;;) {
+    const Node& node = nodes_[index];
+    Lanes weights;
+    const float sum = node.weigh(from, weights);
     if (!(sum > 0) || !(sum < kInfinity)) return std::nullopt;
-    const float share = first / sum;
-    const bool is_first = choice < share;
-    choice = is_first ? choice / share : (choice - share) / (1 - share);
-    choice = min(max(choice, 0.0f), 0x1.fffffep-1f);
-    probability *= is_first ? share : second / sum;
-    index = is_first ? index + 1 : nodes_[index].second;
+    choice *= sum;
+    const int lane = pick(weights, choice);
+    probability *= weights[lane] / sum;
+    index = node.child[lane];
+    if ((node.is_node >> lane & 1) == 0) return Choice{index, probability};
   }
-  return Choice{nodes_[index].light, probability};
 }
 
 float LightTree::probability(std::uint32_t light, const Receiver& from) const {
   // From the leaf up to the root.
   float probability = 1;
-  std::uint32_t index = leaf_of_light_[light];
-  if (nodes_.empty() || nodes_[index].second != 0 || nodes_[index].light != light) return 0;
-  while (index != 0) {
-    const std::uint32_t parent = nodes_[index].parent;
-    const float first = importance_of(nodes_[parent + 1].bounds, from),
-                second = importance_of(nodes_[nodes_[parent].second].bounds, from);
-    const float sum = first + second;
+  for (Leaf at = leaf_of_light_[light]; at.node != kNoNode;) {
+    const Node& node = nodes_[at.node];
+    Lanes weights;
+    const float sum = node.weigh(from, weights);
     if (!(sum > 0) || !(sum < kInfinity)) return 0;
-    probability *= (index == parent + 1 ? first : second) / sum;
-    index = parent;
+    probability *= weights[at.lane] / sum;
+    if (at.node == 0) return probability;
+    at = {node.parent, node.lane_in_parent};
   }
-  return probability;
+  return 0;
 }
 
 }  // namespace boxwood::render

@@ -1,14 +1,16 @@
 // light_tree.h: which of many lights matters at a point?
 //
-// A binary tree over lights that stand somewhere. Each node bounds where its lights are, where they face and
-// how strong they are; a light is drawn by walking down from the root, at each node to one of the two
-// children, by how much light each could send to the point. Conty Estevez and Kulla, "Importance Sampling of
-// Many Lights with Adaptive Tree Splitting", HPG 2018 (without the splitting); angles are handled by their
-// cosines as in Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.6.3.
+// A tree over lights that stand somewhere. Each node bounds, for each of up to eight children, where its
+// lights are, where they face and how strong they are; a light is drawn by walking down from the root, at
+// each node to one of the children, by how much light each could send to the point. All eight are weighed at
+// once, by vectors of floats. Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree
+// Splitting", HPG 2018 (without the splitting, and with a wider tree); angles are handled by their cosines as
+// in Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.6.3.
 //
 // Invariant: a light that could send light to the point is drawn with a chance above 0.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -53,17 +55,35 @@ class LightTree {
   float probability(std::uint32_t light, const Receiver& from) const;
 
  private:
-  struct Node {
-    LightBounds bounds;
-    std::uint32_t parent = 0;
-    std::uint32_t second = 0;  // the first child follows the node; 0: a leaf
-    std::uint32_t light = 0;   // leaf
-  };
-  std::uint32_t build(const std::vector<LightBounds>& lights, std::uint32_t* begin, std::uint32_t* end,
-                      std::uint32_t parent);
+  static constexpr int kWidth = 8;
+  using Lanes = std::array<float, kWidth>;
 
-  std::vector<Node> nodes_;  // the root first
-  std::vector<std::uint32_t> leaf_of_light_;
+  /// The bounds of the children, lane by lane; a lane without a child has no strength.
+  struct Node {
+    Lanes x{}, y{}, z{}, radius{};  // a sphere around the box
+    Lanes axis_x{}, axis_y{}, axis_z{};
+    Lanes cos_facing{}, sin_facing{}, cos_spread{};
+    Lanes strength{};
+    Lanes turned{};         // -1 for lights that shine on both sides, else 1
+    Lanes least_falloff{};  // of the irradiance with the angle; 1 for lights that shine all around
+    std::array<std::uint32_t, kWidth> child{};
+    std::uint32_t is_node = 0;  // bit i: child i is a node, else a light
+    std::uint32_t parent = 0, lane_in_parent = 0;
+
+    void set(int lane, const LightBounds& bounds);
+    /// How much light each child could send to `from` at most, roughly; and the sum.
+    float weigh(const Receiver& from, Lanes& weights) const;
+  };
+  struct Leaf {
+    std::uint32_t node, lane;
+  };
+  struct BinaryNode;
+  static std::uint32_t build(const std::vector<LightBounds>& lights, std::uint32_t* begin, std::uint32_t* end,
+                             std::vector<BinaryNode>& nodes);
+  std::uint32_t widen(const std::vector<BinaryNode>& nodes, std::uint32_t index);
+
+  std::vector<Node> nodes_;          // the root first
+  std::vector<Leaf> leaf_of_light_;  // kNoNode for lights without strength
 };
 
 }  // namespace boxwood::render

@@ -1,6 +1,7 @@
 #include "boxwood/render/path.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "boxwood/render/bsdf.h"
@@ -17,6 +18,9 @@ namespace {
 constexpr int kMaxBounces = 64, kMaxSteps = 1024;
 /// How many hits ahead the corners of triangles are asked for; memory answers meanwhile.
 constexpr std::size_t kAhead = 4;
+
+/// So many groups of materials are kept apart where hits are sorted by them.
+constexpr std::size_t kMaterialGroups = 256;
 
 constexpr int kRouletteAfter = 3;  // bounces; early ones carry most of the picture
 constexpr float kMaxSurvival = 0.95f;
@@ -63,7 +67,14 @@ class PathTracer final : public Integrator {
  public:
   PathTracer(const Scene& scene, const Camera& camera, float pixel_angle)
       : scene_(scene), lights_(scene, camera), shadows_(scene), pixel_angle_(pixel_angle) {
-    for (const Material& material : scene.description().materials) materials_.emplace_back(material);
+    const SceneDesc& desc = scene.description();
+    for (const Material& material : desc.materials) materials_.emplace_back(material);
+    for (const Instance& instance : placed_instances(desc)) {
+      const MaterialId own = desc.geometries[instance.geometry.value].material;
+      const MaterialId id = instance.material.is_valid() ? instance.material : own;
+      group_of_instance_.push_back(
+          id.is_valid() ? static_cast<std::uint8_t>(1 + id.value % (kMaterialGroups - 1)) : 0);
+    }
   }
 
   int channels() const override { return 3; }
@@ -94,13 +105,15 @@ class PathTracer final : public Integrator {
       scene_.closest_hit(batch.rays, std::span(batch.hits).first(paths.size()), &serial_executor());
       rays += paths.size();
 
-      // Let each go on from there; those at their end leave a gap.
+      // Let each go on from there, material by material; those at their end leave a gap.
       batch.pending.clear();
       batch.ways.clear();
-      for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (i + 2 * kAhead < paths.size()) prefetch_triangle(scene_, batch.hits[i + 2 * kAhead]);
-        if (i + kAhead < paths.size()) prefetch_corners(scene_, batch.hits[i + kAhead]);
-        batch.goes_on[i] = advance(paths[i], batch.hits[i], static_cast<std::uint32_t>(i), batch);
+      sort_by_material(batch, paths.size());
+      for (std::size_t k = 0; k < paths.size(); ++k) {
+        if (k + 2 * kAhead < paths.size()) prefetch_triangle(scene_, batch.hits[batch.order[k + 2 * kAhead]]);
+        if (k + kAhead < paths.size()) prefetch_corners(scene_, batch.hits[batch.order[k + kAhead]]);
+        const std::uint32_t i = batch.order[k];
+        batch.goes_on[i] = advance(paths[i], batch.hits[i], i, batch);
       }
 
       // Find which of the lights that they asked for are in sight.
@@ -129,18 +142,32 @@ class PathTracer final : public Integrator {
  private:
   /// The memory of one step of all paths.
   struct Batch {
-    explicit Batch(std::size_t size) : hits(size), goes_on(size), is_hidden(std::make_unique<bool[]>(size)) {
+    explicit Batch(std::size_t size)
+        : hits(size), order(size), goes_on(size), is_hidden(std::make_unique<bool[]>(size)) {
       rays.reserve(size);
       pending.reserve(size);
     }
     std::vector<Ray> rays;
     std::vector<Hit> hits;
+    std::vector<std::uint32_t> order;  // in which hits are looked at
     std::vector<char> goes_on;
     std::vector<Pending> pending;    // one for each of `rays` towards lights,
     std::vector<Shadows::Way> ways;  // and what it starts in
     std::vector<Vec3> transmittances;
     std::unique_ptr<bool[]> is_hidden;
   };
+
+  /// Puts the first `count` hits in an order in which equal materials follow each other: the processor then
+  /// foresees branches better. Instances stand for their materials; misses come first.
+  void sort_by_material(Batch& batch, std::size_t count) const {
+    std::array<std::uint32_t, kMaterialGroups + 1> first{};
+    for (std::size_t i = 0; i < count; ++i) ++first[group_of(batch.hits[i]) + 1];
+    for (std::size_t group = 1; group < first.size(); ++group) first[group] += first[group - 1];
+    for (std::size_t i = 0; i < count; ++i)
+      batch.order[first[group_of(batch.hits[i])]++] = static_cast<std::uint32_t>(i);
+  }
+
+  std::size_t group_of(const Hit& hit) const { return hit ? group_of_instance_[hit.instance_id.value] : 0; }
 
   /// Takes a path from its ray's hit to its next ray. Adds a ray towards a light to the batch. False at the
   /// path's end.
@@ -185,11 +212,11 @@ class PathTracer final : public Integrator {
     const Look look = look_at(desc, material, prepared(id), surface.uv, uv_width);
     const Bsdf bsdf(look, surface, mapped_normal(scene_, hit, surface, material), -path.ray.direction);
     const Receiver place{surface.position, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal()};
-    if (bsdf.has_spread()) ask_for_light(path, surface, bsdf, place, position, batch);
+    const Vec2 choices = path.sampler.next_2d();  // of a light, and of a lobe
+    if (bsdf.has_spread()) ask_for_light(path, surface, bsdf, place, position, choices.x, batch);
 
     // Go on in a direction that the surface chooses.
-    const float choice = path.sampler.next_1d();
-    const std::optional<BsdfSample> next = bsdf.sample(choice, path.sampler.next_2d());
+    const std::optional<BsdfSample> next = bsdf.sample(choices.y, path.sampler.next_2d());
     if (!next) return false;
     path.throughput *= next->weight;
 
@@ -223,8 +250,7 @@ class PathTracer final : public Integrator {
   }
 
   void ask_for_light(Path& path, const Surface& surface, const Bsdf& bsdf, const Receiver& place,
-                     std::uint32_t position, Batch& batch) const {
-    const float choice = path.sampler.next_1d();
+                     std::uint32_t position, float choice, Batch& batch) const {
     const auto light = lights_.sample(surface, place.normal, choice, path.sampler.next_2d());
     if (!light) return;
     const BsdfValue toward = bsdf.evaluate(light->direction);
@@ -244,6 +270,7 @@ class PathTracer final : public Integrator {
   Shadows shadows_;
   float pixel_angle_;
   std::vector<PreparedMaterial> materials_;
+  std::vector<std::uint8_t> group_of_instance_;
   PreparedMaterial default_material_{Material{}};
 };
 

@@ -47,14 +47,24 @@ constexpr std::uint32_t owen_scramble_reversed(std::uint32_t reversed, std::uint
   return reversed;
 }
 
-/// What each value of each byte of an index adds to the second coordinate. The direction numbers of that
-/// coordinate are the rows of Pascal's triangle modulo 2.
+/// Both halves at once; the halves also change places.
+constexpr std::uint64_t reverse_bits(std::uint64_t x) {
+  x = (x << 32) | (x >> 32);
+  x = ((x & 0x0000ffff0000ffffu) << 16) | ((x >> 16) & 0x0000ffff0000ffffu);
+  x = ((x & 0x00ff00ff00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ff00ff00ffu);
+  x = ((x & 0x0f0f0f0f0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0f0f0f0f0fu);
+  x = ((x & 0x3333333333333333u) << 2) | ((x >> 2) & 0x3333333333333333u);
+  return ((x & 0x5555555555555555u) << 1) | ((x >> 1) & 0x5555555555555555u);
+}
+
+/// What each value of each byte of an index, its bits reversed, adds to the second coordinate, its bits
+/// reversed too. The direction numbers of that coordinate are the rows of Pascal's triangle modulo 2.
 inline constexpr auto kSecondSobol = [] {
   std::array<std::array<std::uint32_t, 256>, 4> table{};
   std::uint32_t direction = 0x80000000u;
-  for (unsigned bit = 0; bit < 32; ++bit, direction ^= direction >> 1)
+  for (unsigned bit = 31; bit < 32; --bit, direction ^= direction >> 1)
     for (unsigned value = 0; value < 256; ++value)
-      if (value >> (bit % 8) & 1u) table[bit / 8][value] ^= direction;
+      if (value >> (bit % 8) & 1u) table[bit / 8][value] ^= reverse_bits(direction);
   return table;
 }();
 
@@ -71,21 +81,21 @@ class Sampler {
   Vec2 next_2d() {
     const std::uint32_t seed = hash_bits(pixel_seed_, dimension_++);
     // Shuffle: which point of the sequence this sample takes.
-    const std::uint32_t index = reverse_bits(owen_scramble_reversed(reversed_index_, seed));
+    const std::uint32_t reversed = owen_scramble_reversed(reversed_index_, seed);
     // Its first coordinate is the index with its bits reversed,
     // so the reversed coordinate is the index itself.
-    const std::uint32_t x = reverse_bits(owen_scramble_reversed(index, hash_bits(seed, 1)));
-    const std::uint32_t y =
-        reverse_bits(owen_scramble_reversed(reverse_bits(second_sobol(index)), hash_bits(seed, 2)));
-    return {to_unit(x), to_unit(y)};
+    const std::uint32_t x = owen_scramble_reversed(reverse_bits(reversed), hash_bits(seed, 1));
+    const std::uint32_t y = owen_scramble_reversed(second_sobol(reversed), hash_bits(seed, 2));
+    const std::uint64_t both = reverse_bits(std::uint64_t{y} << 32 | x);
+    return {to_unit(static_cast<std::uint32_t>(both >> 32)), to_unit(static_cast<std::uint32_t>(both))};
   }
 
  private:
-  /// The second coordinate of the Sobol sequence.
+  /// The second coordinate of the Sobol sequence; both are reversed.
   /// It is linear over bits, so each byte adds (xor) its own share.
-  static constexpr std::uint32_t second_sobol(std::uint32_t index) {
-    return kSecondSobol[0][index & 255] ^ kSecondSobol[1][(index >> 8) & 255] ^
-           kSecondSobol[2][(index >> 16) & 255] ^ kSecondSobol[3][index >> 24];
+  static constexpr std::uint32_t second_sobol(std::uint32_t reversed) {
+    return kSecondSobol[0][reversed & 255] ^ kSecondSobol[1][(reversed >> 8) & 255] ^
+           kSecondSobol[2][(reversed >> 16) & 255] ^ kSecondSobol[3][reversed >> 24];
   }
   static constexpr float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 

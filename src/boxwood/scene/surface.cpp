@@ -17,8 +17,7 @@ constexpr float u = 0x1p-24f;  // half a unit in the last place of 1
 struct LocalSurface {
   Vec3 position;
   Vec3 error;
-  Vec3 normal;
-  Vec3 shading_normal;
+  Vec3 shading_normal;  // zero: the geometric one
   Vec2 uv;
 };
 
@@ -29,9 +28,9 @@ float leaf_test_error(const Triangle& t, Vec3 p) {
   const float reach =
       std::sqrt(max(length_squared(t.a - p), max(length_squared(t.b - p), length_squared(t.c - p))));
   const Vec3 e1 = t.b - t.a, e2 = t.c - t.a;
-  const float area = length(cross(e1, e2)),
-              product = std::sqrt(length_squared(e1)) * std::sqrt(length_squared(e2));
-  const float sliver = area > 0 ? min(product / area, 0x1p12f) : 1.0f;
+  const float area_squared = length_squared(cross(e1, e2)),
+              product_squared = length_squared(e1) * length_squared(e2);
+  const float sliver = area_squared > 0 ? std::sqrt(min(product_squared / area_squared, 0x1p24f)) : 1.0f;
   return reach * (16 * u + 8 * u * sliver);
 }
 
@@ -41,7 +40,6 @@ LocalSurface on_triangle(const Triangle& t, float v_weight, float w_weight) {
   s.position = t.a * a_weight + t.b * v_weight + t.c * w_weight;
   s.error = (abs(t.a * a_weight) + abs(t.b * v_weight) + abs(t.c * w_weight)) * (8 * u) +
             splat(leaf_test_error(t, s.position));
-  s.normal = s.shading_normal = t.normal();
   s.uv = {v_weight, w_weight};
   return s;
 }
@@ -75,17 +73,16 @@ LocalSurface on_shape(const Quad& quad, const PreparedRay&, const Crossing& c) {
 
 LocalSurface on_shape(const Sphere& sphere, const PreparedRay& ray, const Crossing& c) {
   LocalSurface s;
-  s.normal = s.shading_normal = sphere.normal(ray, c);
-  s.position = sphere.center + s.normal * sphere.radius;  // drawn onto the sphere, whatever the error of t
+  const Vec3 normal = sphere.normal(ray, c);
+  s.position = sphere.center + normal * sphere.radius;  // drawn onto the sphere, whatever the error of t
   s.error = abs(sphere.center) * (4 * u) + splat(sphere.radius * 8 * u);
-  s.uv = {0.5f + std::atan2(s.normal.z, s.normal.x) * 0.15915494f,
-          0.5f + std::asin(min(max(s.normal.y, -1.0f), 1.0f)) * 0.31830989f};
+  s.uv = {0.5f + std::atan2(normal.z, normal.x) * 0.15915494f,
+          0.5f + std::asin(min(max(normal.y, -1.0f), 1.0f)) * 0.31830989f};
   return s;
 }
 
 LocalSurface on_shape(const Cuboid& cuboid, const PreparedRay& ray, const Crossing& c) {
   LocalSurface s;
-  s.normal = s.shading_normal = cuboid.normal(ray, c);
   const int axis = static_cast<int>(c.part / 2);
   s.position = min(max(ray.origin + ray.direction * c.t, cuboid.lower), cuboid.upper);
   s.position[axis] = c.part % 2 ? cuboid.upper[axis] : cuboid.lower[axis];
@@ -99,20 +96,19 @@ LocalSurface on_shape(const Cuboid& cuboid, const PreparedRay& ray, const Crossi
 
 LocalSurface on_shape(const Disk& disk, const PreparedRay& ray, const Crossing& c) {
   LocalSurface s;
-  s.normal = s.shading_normal = disk.normal(ray, c);
+  const Vec3 normal = disk.normal(ray, c);
   const Vec3 p = ray.origin + ray.direction * c.t;
-  s.position = p - s.normal * dot(s.normal, p - disk.center);  // drawn onto the plane
+  s.position = p - normal * dot(normal, p - disk.center);  // drawn onto the plane
   s.error = (abs(s.position) + abs(disk.center) + splat(disk.radius)) * (8 * u);
   Vec3 x, y;
-  orthonormal_basis(s.normal, x, y);
+  orthonormal_basis(normal, x, y);
   const Vec3 from = (s.position - disk.center) / disk.radius;
   s.uv = {0.5f + 0.5f * dot(from, x), 0.5f + 0.5f * dot(from, y)};
   return s;
 }
 
-LocalSurface on_shape(const AnyShape& shape, const PreparedRay& ray, const Crossing& c) {
+LocalSurface on_shape(const AnyShape&, const PreparedRay& ray, const Crossing& c) {
   LocalSurface s;
-  s.normal = s.shading_normal = shape.normal(ray, c);
   s.position = ray.origin + ray.direction * c.t;
   // Nothing is known of how it was worked out.
   s.error = (abs(ray.origin) + abs(ray.direction * c.t)) * (32 * u);
@@ -180,7 +176,8 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   s.position = local.position;
   s.error = local.error;
   s.normal = hit.normal;
-  s.shading_normal = local.shading_normal;
+  const bool is_smooth = length_squared(local.shading_normal) > 0;
+  s.shading_normal = is_smooth ? local.shading_normal : s.normal;
   s.uv = local.uv;
   s.material = instance.material.is_valid() ? instance.material
                : geometry.materials.empty() ? geometry.material
@@ -194,8 +191,10 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
     s.position = world_from_object.point(local.position);
     s.error = spread(world_from_object, object_error) +
               (spread(world_from_object, abs(local.position)) + abs(world_from_object.origin)) * (8 * u);
-    s.shading_normal = normalize(transform_normal(object_from_world, local.shading_normal));
+    if (is_smooth) s.shading_normal = normalize(transform_normal(object_from_world, local.shading_normal));
   }
+
+  if (!is_smooth) return s;
 
   // Keep the shading normal on the geometric side.
   if (dot(s.shading_normal, s.normal) < 0) s.shading_normal = -s.shading_normal;
@@ -203,11 +202,14 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   return s;
 }
 
+float Surface::clearance() const {
+  // Far enough to leave the error box; twice, for the rounding of the new origin itself.
+  return 2 * (dot(abs(normal), error) + 2 * u * max_component(abs(position)));
+}
+
 Ray Surface::spawn(Vec3 direction, float t_max) const {
-  // Far enough along the normal to leave the error box; twice, for the rounding of the new origin itself.
-  const float distance = 2 * (dot(abs(normal), error) + 2 * u * max_component(abs(position)));
   const Vec3 side = dot(normal, direction) < 0 ? -normal : normal;
-  return {position + side * distance, 0, direction, t_max};
+  return {position + side * clearance(), 0, direction, t_max};
 }
 
 }  // namespace boxwood

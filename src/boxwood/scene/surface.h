@@ -19,6 +19,8 @@ struct Surface {
   /// moved along the normal, to the side of `direction`, past the error bound and the leaf test's own
   /// rounding.
   Ray spawn(Vec3 direction, float t_max = kInfinity) const;
+  /// How far along the normal that is.
+  float clearance() const;
 };
 
 /// Brings what surface_at() will read for `hit` nearer to the processor, in two steps with some other work
