@@ -116,14 +116,9 @@ class PathTracer final : public Integrator {
         batch.goes_on[i] = advance(paths[i], batch.hits[i], i, batch);
       }
 
-      // Find which of the lights that they asked for are in sight.
-      batch.rays.clear();
-      for (const Shadows::Way& way : batch.ways) batch.rays.push_back(way.ray);
-      const std::span<bool> is_hidden(batch.is_hidden.get(), batch.rays.size());
-      scene_.any_hit(batch.rays, is_hidden, &serial_executor());
-      rays += batch.rays.size();
+      // Find how much of the lights that they asked for is in sight.
       batch.transmittances.resize(batch.ways.size());
-      shadows_.transmittances(batch.ways, is_hidden, batch.transmittances, rays);
+      shadows_.transmittances(batch.ways, batch.transmittances, rays);
       for (std::size_t i = 0; i < batch.pending.size(); ++i)
         paths[batch.pending[i].path].gathered += batch.pending[i].light * batch.transmittances[i];
 
@@ -142,8 +137,7 @@ class PathTracer final : public Integrator {
  private:
   /// The memory of one step of all paths.
   struct Batch {
-    explicit Batch(std::size_t size)
-        : hits(size), order(size), goes_on(size), is_hidden(std::make_unique<bool[]>(size)) {
+    explicit Batch(std::size_t size) : hits(size), order(size), goes_on(size) {
       rays.reserve(size);
       pending.reserve(size);
     }
@@ -154,7 +148,6 @@ class PathTracer final : public Integrator {
     std::vector<Pending> pending;    // one for each of `rays` towards lights,
     std::vector<Shadows::Way> ways;  // and what it starts in
     std::vector<Vec3> transmittances;
-    std::unique_ptr<bool[]> is_hidden;
   };
 
   /// Puts the first `count` hits in an order in which equal materials follow each other: the processor then

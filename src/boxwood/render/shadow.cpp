@@ -19,36 +19,91 @@ float clear_share(const SceneDesc& desc, MaterialId id, Vec2 uv) {
 }
 
 constexpr int kMaxSteps = 1024;
+/// More boxes than this become one: a ray is held against each.
+constexpr std::size_t kMaxVeils = 4;
+
+Box3 box_of(const Geometry& geometry) {
+  Box3 box;
+  std::visit(
+      [&](const auto& shapes) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(shapes)>, TriangleMesh>) {
+          for (const Vec3 position : shapes.positions) box.extend(position);
+        } else {
+          for (const auto& shape : shapes) box.extend(shape.box());
+        }
+      },
+      geometry.shapes);
+  return box;
+}
+
+bool has_see_through(const SceneDesc& desc, const Instance& instance) {
+  const auto lets_through = [&](MaterialId id) {
+    // Mixes hold materials that stand before them.
+    const auto look = [&](const auto& self, MaterialId m) -> bool {
+      const Material& material = material_of(desc, m);
+      if (material.kind == Material::Kind::mix)
+        return self(self, material.first) || self(self, material.second);
+      return is_see_through(material);
+    };
+    return look(look, id);
+  };
+  if (instance.material.is_valid()) return lets_through(instance.material);
+  const Geometry& geometry = desc.geometries[instance.geometry.value];
+  if (geometry.materials.empty()) return lets_through(geometry.material);
+  return std::any_of(geometry.materials.begin(), geometry.materials.end(), lets_through);
+}
 
 }  // namespace
 
-Shadows::Shadows(const Scene& scene) : scene_(scene) {
-  const std::vector<Material>& materials = scene.description().materials;
-  has_see_through_ = std::any_of(materials.begin(), materials.end(), is_see_through);
+Shadows::Shadows(const Scene& scene) : scene_(scene), bounds_(scene.bounds()) {
+  const SceneDesc& desc = scene.description();
+  for (const Instance& instance : placed_instances(desc)) {
+    is_veil_.push_back(has_see_through(desc, instance));
+    if (!is_veil_.back()) continue;
+    const Geometry& geometry = desc.geometries[instance.geometry.value];
+    veils_.push_back(transform_box(instance.world_from_object, box_of(geometry)));
+  }
+  if (veils_.size() <= kMaxVeils) return;
+  Box3 all;
+  for (const Box3& box : veils_) all.extend(box);
+  veils_ = {all};
 }
 
-void Shadows::transmittances(std::span<const Way> ways, std::span<const bool> is_hidden, std::span<Vec3> out,
-                             std::uint64_t& rays) const {
-  std::vector<Ray> hidden;
+bool Shadows::may_meet_veil(const Ray& ray) const {
+  if (veils_.empty()) return false;
+  const PreparedRay prepared(ray, bounds_);
+  return std::any_of(veils_.begin(), veils_.end(),
+                     [&](const Box3& box) { return prepared.bound(box) <= ray.t_max; });
+}
+
+void Shadows::transmittances(std::span<const Way> ways, std::span<Vec3> out, std::uint64_t& rays) const {
+  rays += ways.size();
+  std::vector<Ray> plain, veiled;
+  std::vector<char> is_veiled(ways.size());
+  plain.reserve(ways.size());
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    is_veiled[i] = may_meet_veil(ways[i].ray);
+    (is_veiled[i] ? veiled : plain).push_back(ways[i].ray);
+  }
+  const std::unique_ptr<bool[]> is_hidden(new bool[plain.size()]);
+  scene_.any_hit(plain, {is_hidden.get(), plain.size()}, &serial_executor());
+  std::vector<Hit> hits(veiled.size());
+  scene_.closest_hit(veiled, hits, &serial_executor());
+
+  std::size_t next_plain = 0, next_veiled = 0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const Way& way = ways[i];
-    if (is_hidden[i]) {
-      out[i] = {0, 0, 0};
-      if (has_see_through_) hidden.push_back(way.ray);
-    } else {
+    const Hit* hit = is_veiled[i] ? &hits[next_veiled++] : nullptr;
+    const bool is_clear = hit != nullptr ? !hit->is_hit() : !is_hidden[next_plain++];
+    if (is_clear)
       out[i] = max_component(way.absorption) > 0
                    ? beer(way.absorption, way.ray.t_max * length(way.ray.direction))
                    : Vec3{1, 1, 1};
-    }
+    else if (hit != nullptr && is_veil_[hit->instance_id.value] != 0)
+      out[i] = walk(way, *hit, rays);
+    else
+      out[i] = {0, 0, 0};
   }
-  if (hidden.empty()) return;
-
-  // What is in the way? Mostly something opaque, and that is that.
-  std::vector<Hit> hits(hidden.size());
-  scene_.closest_hit(hidden, hits, &serial_executor());
-  rays += hidden.size();
-  for (std::size_t i = 0, h = 0; i < ways.size(); ++i)
-    if (is_hidden[i]) out[i] = walk(ways[i], hits[h++], rays);
 }
 
 Vec3 Shadows::walk(const Way& way, const Hit& first_hit, std::uint64_t& rays) const {

@@ -1,9 +1,11 @@
 // shadow.h: how much of a light gets past what is in the way?
 //
 // All or nothing, except where surfaces let light go straight on: cut-outs, veils, the boundaries of media.
-// Only in scenes with such surfaces, and only for rays that something blocks, the way is walked from surface
-// to surface.
+// Rays that meet the box of such a thing look for the first surface in their way, and are walked on from
+// there if it lets light through; all others only ask whether there is anything.
 #pragma once
+
+#include <vector>
 
 #include "boxwood/scene/scene.h"
 
@@ -27,16 +29,17 @@ class Shadows {
     Ray ray;
     Vec3 absorption;
   };
-  /// Answers many. `is_hidden` says of each whether anything is in its way. Adds the rays it traced to
-  /// `rays`.
-  void transmittances(std::span<const Way> ways, std::span<const bool> is_hidden, std::span<Vec3> out,
-                      std::uint64_t& rays) const;
+  /// Answers many. Adds the rays it traced to `rays`.
+  void transmittances(std::span<const Way> ways, std::span<Vec3> out, std::uint64_t& rays) const;
 
  private:
+  bool may_meet_veil(const Ray& ray) const;
   Vec3 walk(const Way& way, const Hit& first_hit, std::uint64_t& rays) const;
 
   const Scene& scene_;
-  bool has_see_through_ = false;
+  Box3 bounds_;
+  std::vector<Box3> veils_;    // around all that light may go through
+  std::vector<char> is_veil_;  // by instance
 };
 
 }  // namespace boxwood::render
