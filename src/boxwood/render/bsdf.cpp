@@ -101,7 +101,14 @@ void Bsdf::set_chances() {
     sampled_ = spread_ = 1u << diffuse;
     return;
   }
-  const float z = outgoing_.z, reflected = boundary_ > 0 ? boundary_ * boundary_albedo(z) : 0;
+  const float z = outgoing_.z;
+  float reflected = 0;
+  if (boundary_ > 0) {
+    reflected = boundary_ * boundary_albedo(z);
+    const float mean =
+        alpha_ > 0 ? look_.prepared->coat_over_base->mean(alpha_) : look_.prepared->fresnel_mean;
+    passes_ = (1 - reflected) / (1 - boundary_ * mean);
+  }
   chance_[coat] = share_[coat] > 0 ? share_[coat] * coat_albedo(z) : 0;
   if (share_[sheen] > 0)
     chance_[sheen] =
@@ -211,10 +218,7 @@ Bsdf::Scattered Bsdf::evaluate_lobe(Lobe lobe, Vec3 incoming) const {
       if (!(boundary_ > 0)) return {diffuse_ * (lambert * shadow_softening(incoming)), lambert};
       // What passes the boundary on the way in and on the way out; on average over all ways in, what passes
       // on the way out alone.
-      const float mean =
-          alpha_ > 0 ? look_.prepared->coat_over_base->mean(alpha_) : look_.prepared->fresnel_mean;
-      const float passes = (1 - boundary_ * boundary_albedo(outgoing_.z)) *
-                           (1 - boundary_ * boundary_albedo(incoming.z)) / (1 - boundary_ * mean);
+      const float passes = passes_ * (1 - boundary_ * boundary_albedo(incoming.z));
       return {diffuse_ * (lambert * passes), lambert};
     }
     case metal:

@@ -93,6 +93,7 @@ class Bsdf {
   float alpha_;         // of metal, glass and boundary
   Vec3 diffuse_;        // what the matte base sends back of the light that reaches it
   float boundary_ = 0;  // the share of the clear boundary's reflection, over the matte base
+  float passes_ = 1;    // what the boundary lets out this way, over its mean
   std::array<float, kLobes> share_{};   // of the surface's area, less what the layers above take
   std::array<float, kLobes> chance_{};  // of being sampled
   float multiple_ = 0;                  // metal: the share of the light that bounces on between the facets

@@ -87,7 +87,12 @@ float opacity_at(const SceneDesc& desc, const Material& material, Vec2 uv) {
 }
 
 PreparedMaterial::PreparedMaterial(const Material& material)
-    : ior(material.ior >= 1 && material.ior < 10 ? material.ior : 1.5f),
+    : is_emissive(render::is_emissive(material)),
+      is_mix(material.kind == Kind::mix),
+      is_see_through(render::is_see_through(material)),
+      has_color_texture(material.color_texture.is_valid()),
+      has_normal_texture(material.normal_texture.is_valid()),
+      ior(material.ior >= 1 && material.ior < 10 ? material.ior : 1.5f),
       fresnel_mean(1 - (1 - internal_diffuse_reflectance(ior)) * ior * ior) {
   using Lobe = AlbedoTable::Lobe;
   // One row where the width is the same everywhere.

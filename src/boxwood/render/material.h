@@ -38,6 +38,7 @@ inline bool is_see_through(const Material& material) {
 struct PreparedMaterial {
   explicit PreparedMaterial(const Material& material);
 
+  bool is_emissive, is_mix, is_see_through, has_color_texture, has_normal_texture;
   float ior;
   float fresnel_mean;  ///< Of a smooth boundary from outside, over a hemisphere of equal light.
   /// For every width that the material has; null where it has no such lobe.

@@ -175,22 +175,18 @@ class PathTracer final : public Integrator {
     const Surface surface = surface_at(scene_, path.ray, hit);
     path.cone_width += path.cone_angle * hit.t;
 
-    // Light from the surface itself.
-    const Vec3 emission = lights_.emission(surface, path.ray.direction);
-    if (max_component(emission) > 0) {
-      const float other =
-          path.last.is_perfect ? 0 : lights_.pdf(hit, surface, path.ray.direction, path.last.place);
-      path.gathered +=
-          path.throughput * emission * (path.last.is_perfect ? 1 : power_heuristic(path.last.pdf, other));
-    }
+    MaterialId id = surface.material;
+    const PreparedMaterial* prepared = &this->prepared(id);
+    if (prepared->is_emissive) gather_emission(path, hit, surface);
     if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) return false;
 
     // Which material it is, where it is several; and whether the light meets it at all.
-    MaterialId id = surface.material;
-    if (material_of(desc, id).kind == Material::Kind::mix)
+    if (prepared->is_mix) {
       id = choose_material(desc, id, surface.uv, path.sampler.next_1d());
+      prepared = &this->prepared(id);
+    }
     const Material& material = material_of(desc, id);
-    if (is_see_through(material)) {
+    if (prepared->is_see_through) {
       const float opacity = opacity_at(desc, material, surface.uv);
       if (opacity < 1 && (opacity <= 0 || !(path.sampler.next_1d() < opacity))) {
         enter(path, material, surface, path.ray.direction);
@@ -200,10 +196,11 @@ class PathTracer final : public Integrator {
     }
 
     // Light that one light source sends here, if nothing is in the way.
-    const float uv_width =
-        material.color_texture.is_valid() ? path.cone_width * uv_density(scene_, hit) : 0.0f;
-    const Look look = look_at(desc, material, prepared(id), surface.uv, uv_width);
-    const Bsdf bsdf(look, surface, mapped_normal(scene_, hit, surface, material), -path.ray.direction);
+    const float uv_width = prepared->has_color_texture ? path.cone_width * uv_density(scene_, hit) : 0.0f;
+    const Look look = look_at(desc, material, *prepared, surface.uv, uv_width);
+    const Vec3 normal =
+        prepared->has_normal_texture ? mapped_normal(scene_, hit, surface, material) : surface.shading_normal;
+    const Bsdf bsdf(look, surface, normal, -path.ray.direction);
     const Receiver place{surface.position, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal()};
     const Vec2 choices = path.sampler.next_2d();  // of a light, and of a lobe
     if (bsdf.has_spread()) ask_for_light(path, surface, bsdf, place, position, choices.x, batch);
@@ -226,6 +223,16 @@ class PathTracer final : public Integrator {
     path.ray = surface.spawn(next->direction);
     ++path.bounce;
     return true;
+  }
+
+  /// Adds the light that the surface sends out itself, in so far as it is this way's to find.
+  void gather_emission(Path& path, const Hit& hit, const Surface& surface) const {
+    const Vec3 emission = lights_.emission(surface, path.ray.direction);
+    if (!(max_component(emission) > 0)) return;
+    float weight = 1;
+    if (!path.last.is_perfect)
+      weight = power_heuristic(path.last.pdf, lights_.pdf(hit, surface, path.ray.direction, path.last.place));
+    path.gathered += path.throughput * emission * weight;
   }
 
   /// Remembers what the path is in, on the other side of a surface.
