@@ -420,7 +420,7 @@ TEST(Path, ManyRaysAtOnceSeeWhatEachSeesAlone) {
   std::vector<Sampler> copies = samplers;
   std::vector<float> together(3 * kCount), alone(3 * kCount);
   const auto counted = std::make_unique<bool[]>(kCount);
-  std::uint64_t traced = 0, traced_alone = 0;
+  RayCounts traced, traced_alone;
   tracer->sample_many(rays, samplers, together, {counted.get(), kCount}, traced);
   for (std::size_t i = 0; i < kCount; ++i)
     EXPECT_TRUE(tracer->sample(rays[i], copies[i], std::span(alone).subspan(3 * i, 3), traced_alone));

@@ -12,7 +12,7 @@ namespace boxwood::render {
 inline Vec3 mean_radiance(const Scene& scene, const Ray& ray, int samples) {
   const auto tracer = make_path_tracer(scene, Camera{});
   std::array<double, 3> sum{};
-  std::uint64_t rays = 0;
+  RayCounts rays;
   for (int s = 0; s < samples; ++s) {
     Sampler sampler(7, static_cast<std::uint32_t>(s));
     std::array<float, 3> value{};

@@ -15,8 +15,8 @@ class ColorIntegrator final : public Integrator {
  public:
   explicit ColorIntegrator(const Scene& scene) : scene_(scene) {}
   int channels() const override { return 3; }
-  bool sample(const Ray& ray, Sampler&, std::span<float> out, std::uint64_t& rays) const override {
-    ++rays;
+  bool sample(const Ray& ray, Sampler&, std::span<float> out, RayCounts& rays) const override {
+    ++rays.camera;
     store(out, color(ray));
     return true;
   }
@@ -38,8 +38,8 @@ class NormalIntegrator final : public Integrator {
  public:
   explicit NormalIntegrator(const Scene& scene) : scene_(scene) {}
   int channels() const override { return 3; }
-  bool sample(const Ray& ray, Sampler&, std::span<float> out, std::uint64_t& rays) const override {
-    ++rays;
+  bool sample(const Ray& ray, Sampler&, std::span<float> out, RayCounts& rays) const override {
+    ++rays.camera;
     const Hit hit = scene_.closest_hit(ray);
     store(out, hit ? surface_at(scene_, ray, hit).shading_normal : Vec3{0, 0, 0});
     return true;
@@ -54,8 +54,8 @@ class DepthIntegrator final : public Integrator {
  public:
   explicit DepthIntegrator(const Scene& scene) : scene_(scene) {}
   int channels() const override { return 1; }
-  bool sample(const Ray& ray, Sampler&, std::span<float> out, std::uint64_t& rays) const override {
-    ++rays;
+  bool sample(const Ray& ray, Sampler&, std::span<float> out, RayCounts& rays) const override {
+    ++rays.camera;
     const Hit hit = scene_.closest_hit(ray);
     out[0] = hit.t;  // in units of a unit direction, so this is a distance
     return hit.is_hit();
@@ -72,8 +72,8 @@ class OcclusionIntegrator final : public Integrator {
   explicit OcclusionIntegrator(const Scene& scene)
       : scene_(scene), reach_(0.33f * length(scene.bounds().is_empty() ? Vec3{} : scene.bounds().extent())) {}
   int channels() const override { return 1; }
-  bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, std::uint64_t& rays) const override {
-    ++rays;
+  bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, RayCounts& rays) const override {
+    ++rays.camera;
     out[0] = 0;
     const Hit hit = scene_.closest_hit(ray);
     if (!hit) return true;
@@ -87,7 +87,7 @@ class OcclusionIntegrator final : public Integrator {
     // An interpolated normal's hemisphere dips below the surface itself;
     // what is seen there is the surface: shut in.
     const bool is_above = (dot(direction, surface.normal) > 0) == is_outside;
-    ++rays;
+    ++rays.shadow;
     out[0] = is_above && !scene_.any_hit(surface.spawn(direction, reach_)) ? 1.0f : 0.0f;
     return true;
   }
@@ -101,8 +101,8 @@ class CostIntegrator final : public Integrator {
  public:
   explicit CostIntegrator(const Scene& scene) : scene_(scene) {}
   int channels() const override { return 2; }
-  bool sample(const Ray& ray, Sampler&, std::span<float> out, std::uint64_t& rays) const override {
-    ++rays;
+  bool sample(const Ray& ray, Sampler&, std::span<float> out, RayCounts& rays) const override {
+    ++rays.camera;
     TraversalStatistics statistics;
     (void)scene_.closest_hit(ray, statistics);
     out[0] = static_cast<float>(statistics.box_tests);

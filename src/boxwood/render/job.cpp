@@ -103,7 +103,9 @@ UnitResult RenderJob::render(const Unit& unit) const {
   // See what they see, and what they hit.
   UnitResult result{film_.empty_tile(unit.tile)};
   const std::span<bool> is_counted(batch.is_counted.get(), batch.rays.size());
-  integrator_->sample_many(batch.rays, batch.samplers, batch.values, is_counted, result.rays);
+  RayCounts rays;
+  integrator_->sample_many(batch.rays, batch.samplers, batch.values, is_counted, rays);
+  result.rays = rays.total();
   std::vector<float> features(batch.rays.size() * features_.channels());
   std::unique_ptr<bool[]> is_hit;
   if (!features_.layers().empty()) {

@@ -79,14 +79,14 @@ class PathTracer final : public Integrator {
 
   int channels() const override { return 3; }
 
-  bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, std::uint64_t& rays) const override {
+  bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, RayCounts& rays) const override {
     bool is_counted = false;
     sample_many({&ray, 1}, {&sampler, 1}, out, {&is_counted, 1}, rays);
     return is_counted;
   }
 
   void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers, std::span<float> out,
-                   std::span<bool> is_counted, std::uint64_t& rays) const override {
+                   std::span<bool> is_counted, RayCounts& rays) const override {
     std::vector<Path> paths;
     paths.reserve(camera_rays.size());
     for (std::size_t i = 0; i < camera_rays.size(); ++i) {
@@ -98,12 +98,14 @@ class PathTracer final : public Integrator {
     }
 
     Batch batch(camera_rays.size());
+    bool is_first = true;
     while (!paths.empty()) {
       // Find what each path hits.
       batch.rays.clear();
       for (const Path& path : paths) batch.rays.push_back(path.ray);
       scene_.closest_hit(batch.rays, std::span(batch.hits).first(paths.size()), &serial_executor());
-      rays += paths.size();
+      (is_first ? rays.camera : rays.bounce) += paths.size();
+      is_first = false;
 
       // Let each go on from there, material by material; those at their end leave a gap.
       batch.pending.clear();

@@ -76,8 +76,7 @@ bool Shadows::may_meet_veil(const Ray& ray) const {
                      [&](const Box3& box) { return prepared.bound(box) <= ray.t_max; });
 }
 
-void Shadows::transmittances(std::span<const Way> ways, std::span<Vec3> out, std::uint64_t& rays) const {
-  rays += ways.size();
+void Shadows::transmittances(std::span<const Way> ways, std::span<Vec3> out, RayCounts& rays) const {
   std::vector<Ray> plain, veiled;
   std::vector<char> is_veiled(ways.size());
   plain.reserve(ways.size());
@@ -89,6 +88,8 @@ void Shadows::transmittances(std::span<const Way> ways, std::span<Vec3> out, std
   scene_.any_hit(plain, {is_hidden.get(), plain.size()}, &serial_executor());
   std::vector<Hit> hits(veiled.size());
   scene_.closest_hit(veiled, hits, &serial_executor());
+  rays.shadow += plain.size();
+  rays.bounce += veiled.size();
 
   std::size_t next_plain = 0, next_veiled = 0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -106,7 +107,7 @@ void Shadows::transmittances(std::span<const Way> ways, std::span<Vec3> out, std
   }
 }
 
-Vec3 Shadows::walk(const Way& way, const Hit& first_hit, std::uint64_t& rays) const {
+Vec3 Shadows::walk(const Way& way, const Hit& first_hit, RayCounts& rays) const {
   const SceneDesc& desc = scene_.description();
   const bool has_end = way.ray.t_max < kInfinity;
   const Vec3 end = has_end ? way.ray.at(way.ray.t_max) : Vec3{0, 0, 0};
@@ -132,7 +133,7 @@ Vec3 Shadows::walk(const Way& way, const Hit& first_hit, std::uint64_t& rays) co
       ray.t_max = 1;
       if (!(dot(ray.direction, along) > 0)) return left;  // the surface is where the light is
     }
-    ++rays;
+    ++rays.bounce;
     hit = scene_.closest_hit(ray);
   }
   return {0, 0, 0};

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "boxwood/render/integrator.h"
 #include "boxwood/scene/scene.h"
 
 namespace boxwood::render {
@@ -30,11 +31,11 @@ class Shadows {
     Vec3 absorption;
   };
   /// Answers many. Adds the rays it traced to `rays`.
-  void transmittances(std::span<const Way> ways, std::span<Vec3> out, std::uint64_t& rays) const;
+  void transmittances(std::span<const Way> ways, std::span<Vec3> out, RayCounts& rays) const;
 
  private:
   bool may_meet_veil(const Ray& ray) const;
-  Vec3 walk(const Way& way, const Hit& first_hit, std::uint64_t& rays) const;
+  Vec3 walk(const Way& way, const Hit& first_hit, RayCounts& rays) const;
 
   const Scene& scene_;
   Box3 bounds_;
