@@ -18,7 +18,7 @@ class Stirrer {
       stir(word);
     }
     std::uint64_t rest = 0;
-    std::memcpy(&rest, at, size);
+    if (size > 0) std::memcpy(&rest, at, size);  // an empty span has no address
     stir(rest ^ static_cast<std::uint64_t>(size) << 56);
   }
   std::uint64_t value() const { return state_; }
