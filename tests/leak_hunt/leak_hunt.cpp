@@ -116,7 +116,7 @@ Count hunt(const simd::Kernels& kernels, const test::Body& body, Vec3 offset, st
 
     // A ray that is handed back counts as a leak: none of these is so unusual.
     std::vector<std::uint32_t> unusual;
-    kernels.closest_hits(tree, batch, bounds, hits.data(), unusual);
+    kernels.closest_hits(tree, batch, bounds, hits.data(), nullptr, unusual);
     count.rays = kBlock;
     count.leaks = unusual.size();
     for (std::size_t i = 0; i < kBlock; ++i) count.leaks += aimed[i].must_hit && !hits[i].is_hit();

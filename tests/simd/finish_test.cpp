@@ -43,7 +43,7 @@ void expect_finished_right(const std::string& name, const std::vector<Triangle>&
         const std::vector<Ray> rays = rays_at(triangles, count, scale);
         std::vector<TriangleHit> found(count);
         std::vector<std::uint32_t> unusual;
-        kernels->closest_hits(*tree, rays, bvh.bounds(), found.data(), unusual);
+        kernels->closest_hits(*tree, rays, bvh.bounds(), found.data(), nullptr, unusual);
         ASSERT_TRUE(unusual.empty());
         std::vector<Hit> hits(count);
         kernels->finish_hits(*tree, rays, found.data(), hits.data());

@@ -89,7 +89,7 @@ TEST(KernelHash, TheSameOnEveryTargetInBatchesAndOnAnyNumberOfThreads) {
         parallel_for(*executor, 0, kRays / kPart, 1, [&](std::size_t part) {
           std::vector<std::uint32_t> unusual;
           kernels->closest_hits(*tree, std::span(w.rays).subspan(part * kPart, kPart), bounds,
-                                hits.data() + part * kPart, unusual);
+                                hits.data() + part * kPart, nullptr, unusual);
           if (!unusual.empty()) hits[part * kPart] = {};
         });
         EXPECT_EQ(hash_of(hits), kHash) << kernels->name << ", batches on " << threads << " threads";

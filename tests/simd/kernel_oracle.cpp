@@ -126,7 +126,7 @@ std::vector<bool> expect_batch_equals_single(const Kernels& kernels, const Trian
   const auto any =
       std::make_unique<bool[]>(2 * rays.size() + 1);  // twice: prefilled with false and with true
   std::fill_n(any.get() + rays.size(), rays.size(), true);
-  kernels.closest_hits(tree, rays, bounds, hits.data(), unusual_closest);
+  kernels.closest_hits(tree, rays, bounds, hits.data(), nullptr, unusual_closest);
   kernels.any_hits(tree, rays, bounds, any.get(), unusual_any);
   std::vector<std::uint32_t> again;
   kernels.any_hits(tree, rays, bounds, any.get() + rays.size(), again);

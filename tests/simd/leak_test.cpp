@@ -54,7 +54,7 @@ void shoot(const Kernels& kernels, const boxwood::test::Mesh& mesh, Vec3 inside,
     std::vector<TriangleHit> closest(kBlock), all;
     const auto any = std::make_unique<bool[]>(kBlock);
     std::vector<std::uint32_t> unusual;
-    kernels.closest_hits(*tree, rays, bounds, closest.data(), unusual);
+    kernels.closest_hits(*tree, rays, bounds, closest.data(), nullptr, unusual);
     kernels.any_hits(*tree, rays, bounds, any.get(), unusual);
 
     std::size_t leaks = 0, miscounted = 0, disagreements = 0;

@@ -88,7 +88,7 @@ void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* h
   Scratch scratch;
   simd::TriangleHit* const found = scratch.found();
   std::vector<std::uint32_t>& unusual = scratch.unusual();
-  parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, unusual);
+  parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
   for (const std::uint32_t i : unusual) found[i] = {};
   if (parts.is_only_triangles)
     finish_triangles(parts, rays, found, hits);

@@ -16,22 +16,30 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-/// What a batch answers of a ray.
-inline void write_answer(const TriangleHit& hit, TriangleHit& answer) {
-  answer = hit;
-  if (!hit.is_hit()) answer.t = kInfinity;
+/// What a batch says of a ray.
+inline void write_found(const TriangleHit& hit, TriangleHit& found) {
+  found = hit;
+  if (!hit.is_hit()) found.t = kInfinity;
 }
-inline void write_answer(const TriangleHit& hit, bool& answer) {
-  answer = hit.is_hit();
+inline void write_found(const TriangleHit& hit, bool& found) {
+  found = hit.is_hit();
 }
 
-/// hits[i] answers rays[i], where the ray is ordinary; `unusual` gets the indices of the others. Answer is
-/// bool for any hit, TriangleHit for the closest.
-template <class Layout, class Answer>
-void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, Answer* hits,
-                 std::vector<std::uint32_t>& unusual) {
-  constexpr bool kAny = std::is_same_v<Answer, bool>;
-  const auto output = [&](std::uint32_t i, const TriangleHit& hit) { write_answer(hit, hits[i]); };
+/// Fetches the line of answers[i] for writing; any line where there are no answers.
+HWY_INLINE void fetch_answer(const Hit* answers, std::size_t i) {
+  __builtin_prefetch(reinterpret_cast<const void*>(std::uintptr_t(answers) + i * sizeof(Hit)), 1);
+}
+
+/// found[i] answers rays[i], where the ray is ordinary; `unusual` gets the indices of the others. Found is
+/// bool for any hit, TriangleHit for the closest, whose `answers` are fetched ahead.
+template <class Layout, class Found>
+void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, Found* found,
+                 const Hit* answers, std::vector<std::uint32_t>& unusual) {
+  constexpr bool kAny = std::is_same_v<Found, bool>;
+  const auto output = [&](std::uint32_t i, const TriangleHit& hit) {
+    write_found(hit, found[i]);
+    if constexpr (!kAny) fetch_answer(answers, i);
+  };
   const char* pool = tree.pool();
   constexpr std::size_t kAtOnce = 4096;
   HWY_ALIGN std::uint32_t order[kAtOnce];
@@ -42,7 +50,11 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
     Bundle<Layout, kAny> bundles[2];
     const auto trace = [&] {
       trace_bundles(pool, std::span(bundles, bundle_count));
-      for (std::size_t k = 0; k < bundle_count; ++k) bundles[k].store(&hits[bundle_begin[k]]);
+      for (std::size_t k = 0; k < bundle_count; ++k) {
+        bundles[k].store(&found[bundle_begin[k]]);
+        if constexpr (!kAny)
+          for (std::size_t i = 0; i < kBundle; ++i) fetch_answer(answers, bundle_begin[k] + i);
+      }
       bundle_count = 0;
     };
     for (std::size_t i = begin; i < end;) {

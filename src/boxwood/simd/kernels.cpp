@@ -78,13 +78,13 @@ struct KernelsFor {
   }
 
   static void closest_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
-                           TriangleHit* hits, std::vector<std::uint32_t>& unusual) {
-    trace_batch<Layout>(tree, rays, bounds, hits, unusual);
+                           TriangleHit* hits, const Hit* answers, std::vector<std::uint32_t>& unusual) {
+    trace_batch<Layout>(tree, rays, bounds, hits, answers, unusual);
   }
 
   static void any_hits(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
                        std::vector<std::uint32_t>& unusual) {
-    trace_batch<Layout>(tree, rays, bounds, hits, unusual);
+    trace_batch<Layout>(tree, rays, bounds, hits, nullptr, unusual);
   }
 
   static void finish_hits(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,

@@ -78,9 +78,10 @@ struct Kernels {
                           float t_max, std::vector<TriangleHit>& hits);
 
   /// As the first three for many rays, on the calling thread: hits[i] answers rays[i]. The indices of rays
-  /// that are not ordinary are appended to `unusual`.
+  /// that are not ordinary are appended to `unusual`. Memory at `answers`, where finish_hits will write, is
+  /// fetched ahead as rays end, and left alone; may be null.
   void (*closest_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
-                       TriangleHit* hits, std::vector<std::uint32_t>& unusual);
+                       TriangleHit* hits, const Hit* answers, std::vector<std::uint32_t>& unusual);
   void (*any_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
                    std::vector<std::uint32_t>& unusual);
 
