@@ -21,8 +21,8 @@ struct Slabs {
   hn::Mask<DIW> enters;
 };
 
-/// The constants of a ray for boxes, in vectors: a kernel that follows one ray keeps them in registers. A ray
-/// below a placement may have negative t (kSigned), where floats must be compared as floats.
+/// The constants of a ray for boxes, in vectors. A ray below a placement may have negative t (kSigned), where
+/// floats must be compared as floats.
 template <bool kSigned>
 struct BoxRay {
   VW inverse[3], near_shift[3], far_shift[3], t_min;

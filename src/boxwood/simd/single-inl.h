@@ -127,13 +127,19 @@ HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const s
   }
 }
 
-/// Not inlined: the compiler would take the constants apart where they were put together, at each node anew.
+/// Makes the compiler read what is behind the pointer anew. A ray's constants are broadcast from memory at no
+/// cost; kept in registers, they would be stored before every leaf and loaded again behind it.
+template <class T>
+HWY_INLINE void read_anew(const T*& pointer) {
+  asm volatile("" : "+r"(pointer));
+}
+
 /// result.t is the limit before.
 template <class Layout, class Way>
 HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const Way& way,
                                   TriangleHit& result) {
   const DIW di;
-  const BoxRay<Way::kSigned> box_ray(ray);
+  const KernelRay* constants = &ray;
   TriangleHit hit = result;
   HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
   keys[0] = std::numeric_limits<std::int32_t>::min();  // below every limit
@@ -144,8 +150,10 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
       const std::int32_t* children = children_of<Layout>(node);
-      __builtin_prefetch(
-          children);  // on a line of their own, which is asked for only when the planes are known
+      // They have a line of their own, which would be asked for only when the planes are known.
+      __builtin_prefetch(children);
+      read_anew(constants);
+      const BoxRay<Way::kSigned> box_ray(*constants);
       const Slabs slabs = box_ray.template cross<Layout>(node, way.limit(hit.t));
       const std::uint32_t bits = mask_bits(di, slabs.enters);
       if (bits != 0) {
@@ -233,6 +241,8 @@ HWY_INLINE bool enter_leaves(const char* pool, const KernelRay& ray, float limit
   return false;
 }
 
+/// Not inlined, nor is the next: where a ray's constants are put together the compiler would take them apart
+/// again, at each node anew.
 template <class Layout, class Way>
 HWY_NOINLINE bool any_hit_one(const char* pool, const KernelRay& ray, const Way& way, float t_max) {
   const float limit = way.limit(t_max);
