@@ -15,6 +15,7 @@
 #include <xmmintrin.h>
 
 #include "boxwood/core/error.h"
+#include "boxwood/simd/kernels.h"
 
 namespace boxwood::app {
 namespace {
@@ -36,10 +37,18 @@ class DenormalsAreZero {
   unsigned before_;
 };
 
+/// Embree is held to the instruction set that BOXWOOD_TARGET holds our kernels to, where it knows it.
+const char* embree_config() {
+  const simd::Kernels* kernels = simd::kernels();
+  if (kernels && kernels->name == "avx2") return "isa=avx2";
+  if (kernels && kernels->name == "sse4") return "isa=sse4.2";
+  return nullptr;
+}
+
 /// A device, and how much memory it holds.
 class Device {
  public:
-  Device() : device_(rtcNewDevice(nullptr)) {
+  Device() : device_(rtcNewDevice(embree_config())) {
     if (!device_) throw std::runtime_error("Embree cannot start on this machine");
     rtcSetDeviceMemoryMonitorFunction(device_, count, &bytes_);
   }
