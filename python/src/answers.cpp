@@ -51,10 +51,6 @@ std::string describe(const char* type, const Shape& shape, const float* t, const
          " of " + std::to_string(count) + " " + verb + ">";
 }
 
-}  // namespace
-
-namespace {
-
 /// Lets the system take the pages of a block when it is short of them; those that it leaves need no clearing.
 void lend_to_system(simd::HugeBuffer& block) {
 #if defined(__linux__) && defined(MADV_FREE)
