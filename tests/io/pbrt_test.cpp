@@ -314,8 +314,8 @@ TEST_F(Pbrt, MaterialsOfBothVersionsBecomeOurs) {
   for (const int clear : {8, 9}) {
     EXPECT_EQ(material(desc, clear).kind, Kind::clear);
   }
-  EXPECT_EQ(material(desc, 10).kind, Kind::plastic);
-  ASSERT_EQ(desc.warnings.size(), 1u);  // the texture that nobody defined
+  EXPECT_EQ(material(desc, 10).kind, Kind::layered);  // a quarter of the gloss, unless given
+  ASSERT_EQ(desc.warnings.size(), 1u);                // the texture that nobody defined
   EXPECT_CONTAINS(desc.warnings[0], "no texture of the name \"half\"");
 }
 
@@ -453,13 +453,49 @@ TEST_F(Pbrt, MaterialsOfManyParts) {
   EXPECT_TRUE(material(desc, 4).is_thin);
   EXPECT_FLOAT_EQ(material(desc, 4).ior, 1.2f);
   EXPECT_FLOAT_EQ(material(desc, 5).roughness, .5f);
-  EXPECT_EQ(material(desc, 6).kind, Kind::plastic);
+  EXPECT_EQ(material(desc, 6).kind, Kind::layered);
   EXPECT_FLOAT_EQ(material(desc, 6).opacity, .25f);
   EXPECT_EQ(material(desc, 7).kind, Kind::layered);
   EXPECT_EQ(material(desc, 7).coat, 1);
   EXPECT_FLOAT_EQ(material(desc, 7).coat_roughness, .5f);
   EXPECT_FLOAT_EQ(material(desc, 8).metalness, .5f);
   EXPECT_TRUE(desc.warnings.empty());
+}
+
+TEST_F(Pbrt, GlossIsAsStrongAsItsColorSays) {
+  const SceneDesc desc = scene("WorldBegin Material \"plastic\" \"rgb Ks\" [1 1 1]\n" + kTriangle +
+                               "Material \"plastic\" \"rgb Ks\" [.1 .2 .4]\n" + kTriangle +
+                               "Material \"plastic\" \"rgb Ks\" [0 0 0]\n" + kTriangle +
+                               "Material \"substrate\" \"rgb Ks\" [.04 .04 .04]\n" + kTriangle +
+                               "Material \"substrate\" \"rgb Ks\" [0 0 0]\n" + kTriangle +
+                               "Material \"uber\" \"rgb Ks\" [.5 .5 .5]\n" + kTriangle +
+                               "Material \"substrate\" \"rgb Ks\" [.02 .04 .06]\n" + kTriangle);
+  using Kind = Material::Kind;
+  EXPECT_EQ(material(desc, 0).kind, Kind::plastic);
+  EXPECT_EQ(material(desc, 1).kind, Kind::layered);
+  EXPECT_FLOAT_EQ(material(desc, 1).specular, .4f);
+  expect_near(material(desc, 1).specular_color, {.25f, .5f, 1});
+  EXPECT_EQ(material(desc, 2).kind, Kind::matte);
+  // Of an index of 1.5 a boundary reflects 4% head-on.
+  EXPECT_EQ(material(desc, 3).kind, Kind::plastic);
+  EXPECT_FLOAT_EQ(material(desc, 3).ior, 1.5f);
+  EXPECT_EQ(material(desc, 4).kind, Kind::matte);
+  EXPECT_EQ(material(desc, 5).kind, Kind::layered);
+  EXPECT_FLOAT_EQ(material(desc, 5).specular, .5f);
+  EXPECT_FLOAT_EQ(material(desc, 6).ior, 1.5f);
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "another color than grey");
+}
+
+TEST_F(Pbrt, WhatWouldLookOtherwiseIsNamed) {
+  const SceneDesc desc = scene(
+      "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0] \"rgb Le\" [1 1 1]\n"
+      "WorldBegin Material \"disney\" \"float sheentint\" .5\n" +
+      kTriangle + "Material \"coatedconductor\" \"float interface.eta\" 2\n" + kTriangle);
+  ASSERT_EQ(desc.warnings.size(), 3u);
+  EXPECT_CONTAINS(desc.warnings[0], "media that shine are not supported");
+  EXPECT_CONTAINS(desc.warnings[1], "sheentint");
+  EXPECT_CONTAINS(desc.warnings[2], "interface.eta");
 }
 
 TEST_F(Pbrt, MediaAlphaAndNormalMapsBelongToTheMaterial) {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <vector>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "boxwood/core/error.h"
@@ -16,6 +17,16 @@ namespace {
 
 // Between the name of a file that is being written and a number; the whole file gets the name itself.
 constexpr const char* kPartEnding = ".part";
+
+/// Has the system bring the file, or the entries of the folder, to the disk. 0, or what went wrong. File
+/// systems that cannot do so for folders say EINVAL.
+int bring_to_disk(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int problem = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
+  ::close(descriptor);
+  return problem;
+}
 
 }  // namespace
 
@@ -108,8 +119,12 @@ void write_file(const std::filesystem::path& path, const std::function<void(cons
     if (first_errno == 0) first_errno = errno;
     reason = first_errno != 0 ? std::strerror(first_errno) : "the disk took only a part of it";
   } else if (!is_stream) {
-    std::filesystem::rename(part, target, error);
+    // Contents before the name: after a loss of power the name must not stand for a file without them.
+    if (const int problem = bring_to_disk(part); problem != 0) reason = std::strerror(problem);
+    if (reason.empty()) std::filesystem::rename(part, target, error);
     if (error) reason = error.message();
+    // The new file is whole under either name; when the folder gets there is the system's affair.
+    if (reason.empty()) (void)bring_to_disk(folder);
   }
   if (!reason.empty()) {
     give_up();

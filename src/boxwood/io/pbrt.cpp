@@ -1,26 +1,21 @@
 // pbrt.cpp: how does a pbrt scene file, version 3 or 4, become a scene?
 //
 // Directives come one by one from the parser and change the state; each Shape takes from the state what
-// applies to it. PLY meshes and pictures are only noted on the way, and read in parallel at the end.
+// applies to it. PLY meshes and pictures are only noted on the way, and read at the end (pbrt_files.h).
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <tuple>
 
 #include "boxwood/io/formats.h"
 #include "boxwood/io/pbrt_camera.h"
+#include "boxwood/io/pbrt_files.h"
 #include "boxwood/io/pbrt_spectrum.h"
 #include "boxwood/io/pbrt_state.h"
-#include "boxwood/io/picture_cache.h"
 
 namespace boxwood::io {
 namespace pbrt {
 namespace {
-
-/// What stands in for a picture that is missing: the grey of a photographer's card, as bright as most scenes
-/// are on average.
-constexpr Vec3 kPlainGrey{0.18f, 0.18f, 0.18f};
 
 class Interpreter {
  public:
@@ -45,7 +40,7 @@ class Interpreter {
       desc_.camera->width = size_.width;
       desc_.camera->height = size_.height;
     }
-    read_files();
+    read_files(desc_, mesh_files_, textures_.pictures(), warnings_, executor_);
     return std::move(desc_);
   }
 
@@ -62,12 +57,6 @@ class Interpreter {
     std::vector<PlacedShape> shapes;
     std::vector<Instance> instances;  // as they stand in the object
     bool is_in_scene = false;
-  };
-  struct MeshFile {
-    std::filesystem::path path;
-    GeometryId geometry;
-    ShapeFrame frame;
-    Place place;
   };
 
   void interpret(Directive& directive);
@@ -94,10 +83,6 @@ class Interpreter {
   void define_medium(const Directive& directive);
   void set_media(const Directive& directive);
   MaterialId material_id(const MaterialKey& key);
-  void read_files();
-  std::vector<char> shown_textures();
-  void drop_hidden_textures();
-  void read_mesh(const MeshFile& file);
 
   Executor& executor_;
   SceneDesc desc_;
@@ -276,7 +261,9 @@ void Interpreter::define_medium(const Directive& directive) {
   absorption = color_of(parameters, "sigma_a", {.0011f, .0024f, .014f}, parser_, warnings_) * scale;
   absorption = max(absorption, Vec3{0, 0, 0});
   const Vec3 scattering = color_of(parameters, "sigma_s", {2.55f, 3.21f, 3.77f}, parser_, warnings_);
-  parameters.ignore({"g", "Le", "Lescale"});
+  parameters.ignore({"g", "Lescale"});  // of what is scattered, and of Le
+  if (max_component(color_of(parameters, "Le", {0, 0, 0}, parser_, warnings_)) > 0)
+    warnings_.once(directive.place, "media that shine are not supported; they only absorb");
   parameters.warn_unused("MakeNamedMedium " + in_quotes(name), warnings_);
   if (max_component(scattering) > 0)
     warnings_.once(directive.place, "scattering in media is not supported; they only absorb");
@@ -313,113 +300,6 @@ MaterialId Interpreter::material_id(const MaterialKey& key) {
     made.opacity_texture = key.coverage.opacity.texture;
   }
   return material_ids_[key] = desc_.add(std::move(made));
-}
-
-void Interpreter::read_mesh(const MeshFile& file) {
-  TriangleMesh mesh;
-  try {
-    mesh = read_ply_mesh(file.path);
-    bake(mesh, file.frame);
-  } catch (const std::exception& error) {
-    fail(file.place, std::string("the mesh cannot be used: ") + error.what());
-  }
-  desc_.geometries[file.geometry.value].shapes = std::move(mesh);
-}
-
-/// Which textures some material shows in the end, by itself or in another.
-std::vector<char> Interpreter::shown_textures() {
-  std::vector<char> is_shown(desc_.textures.size());
-  for (Material& material : desc_.materials)
-    for_each_texture(material, [&](TextureId& id) {
-      if (id.is_valid()) is_shown[id.value] = true;
-    });
-  for (std::size_t i = desc_.textures.size(); i-- > 0;)
-    if (is_shown[i])
-      for (const Texture::Operand* part :
-           {&desc_.textures[i].first, &desc_.textures[i].second, &desc_.textures[i].amount})
-        if (part->texture.is_valid()) is_shown[part->texture.value] = true;
-  return is_shown;
-}
-
-void Interpreter::read_files() {
-  const std::vector<char> is_shown = shown_textures();
-  std::map<std::filesystem::path, std::size_t> place_of_file;
-  std::vector<std::filesystem::path> pictures;
-  for (const Picture& picture : textures_.pictures())
-    if (is_shown[picture.texture.value] && place_of_file.try_emplace(picture.path, pictures.size()).second)
-      pictures.push_back(picture.path);
-
-  // All files at once; what goes wrong is kept by file,
-  // so that the message does not depend on who came first.
-  const std::size_t meshes = mesh_files_.size(), files = meshes + pictures.size();
-  std::vector<std::exception_ptr> errors(files);
-  std::vector<Texture> found(pictures.size());
-  parallel_for(executor_, 0, files, 1, [&](std::size_t i) {
-    try {
-      if (i < meshes)
-        read_mesh(mesh_files_[i]);
-      else
-        found[i - meshes] = open_texture(pictures[i - meshes]);
-    } catch (...) {
-      errors[i] = std::current_exception();
-    }
-  });
-  for (std::size_t i = 0; i < meshes; ++i)
-    if (errors[i]) std::rethrow_exception(errors[i]);
-
-  // Give each texture its picture; go on without those that cannot be read: they are grey.
-  std::vector<char> is_missing(desc_.textures.size());
-  for (const Picture& picture : textures_.pictures()) {
-    if (!is_shown[picture.texture.value]) continue;
-    const std::size_t place = place_of_file.at(picture.path);
-    Texture& texture = desc_.textures[picture.texture.value];
-    if (errors[meshes + place]) {
-      // In products and mixes, grey; elsewhere see below.
-      texture.kind = Texture::Kind::product;
-      texture.first.color = kPlainGrey;
-      is_missing[picture.texture.value] = true;
-      try {
-        std::rethrow_exception(errors[meshes + place]);
-      } catch (const std::exception& error) {
-        warnings_.once(picture.place, std::string("the texture cannot be read (") + error.what() +
-                                          "); plain grey stands in");
-      }
-      continue;
-    }
-    const Texture& file = found[place];
-    texture.width = file.width;
-    texture.height = file.height;
-    texture.texels = file.texels;
-    texture.source = file.source;
-    texture.is_srgb = file.is_srgb && !picture.is_linear;
-  }
-  for (Material& material : desc_.materials) {
-    if (material.color_texture.is_valid() && is_missing[material.color_texture.value])
-      material.color = material.color * kPlainGrey;
-    for_each_texture(material, [&](TextureId& id) {
-      if (id.is_valid() && is_missing[id.value]) id = {};
-    });
-  }
-  drop_hidden_textures();
-}
-
-/// Takes out the textures that no material shows; the others keep their order.
-void Interpreter::drop_hidden_textures() {
-  const std::vector<char> is_shown = shown_textures();
-  std::vector<TextureId> new_ids(desc_.textures.size());
-  std::vector<Texture> shown;
-  for (std::size_t i = 0; i < desc_.textures.size(); ++i) {
-    if (!is_shown[i]) continue;
-    new_ids[i] = TextureId(shown.size());
-    shown.push_back(std::move(desc_.textures[i]));
-  }
-  const auto rename = [&](TextureId& id) {
-    if (id.is_valid()) id = new_ids[id.value];
-  };
-  for (Texture& texture : shown)
-    for (Texture::Operand* part : {&texture.first, &texture.second, &texture.amount}) rename(part->texture);
-  for (Material& material : desc_.materials) for_each_texture(material, rename);
-  desc_.textures = std::move(shown);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "boxwood/io/pbrt_material.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "boxwood/io/color.h"
@@ -16,6 +17,21 @@ MaterialValue of_kind(Kind kind, const TextureValue& color) {
   value.material.color = color.color;
   value.material.color_texture = color.texture;
   return value;
+}
+
+/// What a boundary of the highest index that the renderer takes reflects head-on.
+constexpr float kHighestHeadOn = 0.66f;
+
+/// Gloss of which a boundary reflects only a share, by color; none makes the surface matte.
+void set_gloss(Material& plastic, Vec3 share) {
+  const float most = std::min(max_component(share), 1.0f);
+  if (!(most > 0)) {
+    plastic.kind = Kind::matte;
+  } else if (min_component(share) < 1) {
+    plastic.kind = Kind::layered;
+    plastic.specular = most;
+    plastic.specular_color = share / max_component(share);
+  }
 }
 
 /// Lets all light through unbent.
@@ -181,11 +197,21 @@ MaterialValue Materials::evaluate(const std::string& kind, const Directive& dire
 
   if (kind == "matte" || kind == "diffuse")
     return of_kind(Kind::matte, color(kind == "matte" ? "Kd" : "reflectance", 0.5f));
-  if (kind == "plastic" || kind == "substrate") {
-    // The strength of the gloss follows from the index of refraction here, not from a color.
-    const bool is_plastic = kind == "plastic";
-    parameters.ignore({"Ks"});
-    return plastic("Kd", is_plastic ? 0.25f : 0.5f, 0.1f, true);
+  if (kind == "plastic") {
+    MaterialValue value = plastic("Kd", 0.25f, 0.1f, true);
+    set_gloss(value.material, textures_.plain_color(parameters, "Ks", splat(0.25f)));
+    return value;
+  }
+  if (kind == "substrate") {
+    // The color of the gloss is what it reflects head-on, and there is one index that reflects so much.
+    MaterialValue value = plastic("Kd", 0.5f, 0.1f, true);
+    const Vec3 gloss = textures_.plain_color(parameters, "Ks", splat(0.5f));
+    if (min_component(gloss) < max_component(gloss))
+      warn("gloss (\"Ks\") of another color than grey is not supported in \"substrate\"; its mean stands in");
+    const float root = std::sqrt(std::clamp((gloss.x + gloss.y + gloss.z) / 3, 0.0f, kHighestHeadOn));
+    value.material.ior = (1 + root) / (1 - root);
+    if (root == 0) value.material.kind = Kind::matte;
+    return value;
   }
   if (kind == "coateddiffuse") {
     MaterialValue value = plastic("reflectance", 0.5f, 0, false);
@@ -210,8 +236,8 @@ MaterialValue Materials::evaluate(const std::string& kind, const Directive& dire
     // Alpha is the root of pbrt's number, and the square of ours.
     m.coat_roughness =
         std::sqrt(std::sqrt(std::max(textures_.number(parameters, "interface.roughness", 0), 0.0f)));
-    parameters.ignore({"interface.thickness", "interface.eta", "maxdepth", "nsamples", "remaproughness",
-                       "conductor.eta", "conductor.k", "reflectance"});
+    parameters.ignore({"interface.thickness", "maxdepth", "nsamples", "remaproughness", "conductor.eta",
+                       "conductor.k", "reflectance"});
     return value;
   }
   if (kind == "mirror") return of_kind(Kind::mirror, color("Kr", 0.9f));
@@ -263,7 +289,7 @@ MaterialValue Materials::uber(const Directive& directive, float ior) const {
   const ParameterList& parameters = directive.parameters;
   const TextureValue opacity = textures_.color(parameters, "opacity", {});
   const Vec3 through = textures_.plain_color(parameters, "Kt", {0, 0, 0});
-  const bool is_glossy = max_component(textures_.plain_color(parameters, "Ks", {0.25f, 0.25f, 0.25f})) > 0;
+  const Vec3 gloss = textures_.plain_color(parameters, "Ks", splat(0.25f));
   const bool is_shiny = max_component(textures_.plain_color(parameters, "Kr", {0, 0, 0})) > 0;
   MaterialValue value =
       of_kind(Kind::plastic, textures_.color(parameters, "Kd", {{0.25f, 0.25f, 0.25f}, {}}));
@@ -271,7 +297,7 @@ MaterialValue Materials::uber(const Directive& directive, float ior) const {
   m.ior = ior;
   set_roughness(m, parameters, 0.1f, true);
   if (is_shiny) m.roughness = 0;
-  if (!is_glossy && !is_shiny) m.kind = Kind::matte;
+  set_gloss(m, is_shiny ? splat(1) : gloss);
   if (const float kt = max_component(through); kt > 0) {
     // What gets through, beside what is scattered.
     m.kind = Kind::layered;
@@ -307,12 +333,10 @@ MaterialValue Materials::disney(const Directive& directive, float ior) const {
   m.sheen_color = splat(textures_.number(parameters, "sheen", 0));
   m.sheen_roughness = 0.5f;
   m.is_thin = parameters.boolean("thin", false);
-  parameters.ignore({"sheentint"});
   return value;
 }
 
 Coverage read_coverage(const Directive& shape, const Textures& textures) {
-  shape.parameters.ignore({"shadowalpha"});  // shadows follow the surface itself
   if (shape.parameters.find("alpha") == nullptr) return {};
   return {true, textures.number_or_texture(shape.parameters, "alpha", 1)};
 }

@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""compare_cycles.py: how long do Boxwood and Blender's Cycles take to the same noise?
+
+    tools/compare_cycles.py build/release/boxwood [--threads 2] [--size 256] [--folder DIR]
+
+Writes a glTF scene (a room with three lamps; plaster, glossy plastic, rough metal), renders it with
+both on the processor, each with several numbers of samples, and holds every picture to the same program's own
+picture of many samples. Both trace paths of up to 64 bounces through a box filter, without clamping, denoising
+or adaptive sampling. The time is that of a sample, by the slope between two renders, so that neither pays for
+its start. The error falls as 1 / samples; the time to a relative MSE of 0.01 follows from a render near it.
+Needs `blender` (Debian: apt-get install blender); tried with 3.4.
+"""
+
+import argparse
+import base64
+import json
+import math
+import re
+import struct
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+TARGET = 0.01
+
+# Runs inside of Blender: scene, threads, size, then pairs of samples and file.
+INSIDE_BLENDER = """
+import bpy, numpy, sys, time
+numpy.bool = bool  # the importer of 3.4 still says numpy.bool, which numpy 1.24 has dropped
+gltf, threads, size, *rest = sys.argv[sys.argv.index("--") + 1:]
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.ops.import_scene.gltf(filepath=gltf)
+scene = bpy.context.scene
+scene.camera = next(o for o in scene.objects if o.type == "CAMERA")
+scene.world = bpy.data.worlds.new("black")
+scene.world.color = (0, 0, 0)
+scene.render.engine = "CYCLES"
+scene.render.resolution_x = scene.render.resolution_y = int(size)
+scene.render.resolution_percentage = 100
+scene.render.threads_mode, scene.render.threads = "FIXED", int(threads)
+scene.render.image_settings.file_format = "OPEN_EXR"
+scene.render.image_settings.color_depth = "32"
+scene.render.use_persistent_data = True
+cycles = scene.cycles
+cycles.device, cycles.seed = "CPU", 0
+cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_auto_tile = False
+cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
+cycles.blur_glossy, cycles.light_sampling_threshold = 0, 0
+cycles.pixel_filter_type = "BOX"
+for kind in ("", "diffuse_", "glossy_", "transmission_", "transparent_max_"):
+    setattr(cycles, kind + "bounces" if kind else "max_bounces", 64)
+for samples, file in zip(rest[::2], rest[1::2]):
+    cycles.samples = int(samples)
+    scene.render.filepath = file
+    start = time.time()
+    bpy.ops.render.render(write_still=True)
+    print("TOOK", samples, time.time() - start)
+"""
+
+
+class Gltf:
+    """A scene under construction: one buffer, a node and a mesh for each thing."""
+
+    def __init__(self):
+        self.bytes = b""
+        self.model = {
+            "asset": {"version": "2.0"},
+            "scene": 0,
+            "scenes": [{"nodes": []}],
+            "extensionsUsed": ["KHR_materials_emissive_strength", "KHR_materials_specular"],
+            **{part: [] for part in ("nodes", "meshes", "materials", "accessors", "bufferViews", "cameras")},
+        }
+
+    def material(self, color, roughness=1.0, metallic=0.0, light=0.0):
+        """Rough without metal is matte: how gloss and base share the light, renderers see differently."""
+        material = {
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [*color, 1],
+                "roughnessFactor": roughness,
+                "metallicFactor": metallic,
+            }
+        }
+        material["extensions"] = {}
+        if roughness == 1:
+            material["extensions"]["KHR_materials_specular"] = {"specularFactor": 0}
+        if light:
+            material["emissiveFactor"] = [1, 1, 1]
+            material["extensions"]["KHR_materials_emissive_strength": {"emissiveStrength": light}}
+        self.model["materials"].append(material)
+        return len(self.model["materials"]) - 1
+
+    def array(self, rows, code, kind, component):
+        data = struct.pack(f"<{sum(map(len, rows))}{code}", *(x for row in rows for x in row))
+        self.model["bufferViews"].append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data)})
+        accessor = {"bufferView": len(self.model["bufferViews"]) - 1, "componentType": component, "type": kind}
+        accessor["count"] = len(rows)
+        if kind == "VEC3":
+            accessor["min"], accessor["max"] = [min(c) for c in zip(*rows)], [max(c) for c in zip(*rows)]
+        self.bytes += data
+        self.model["accessors"].append(accessor)
+        return len(self.model["accessors"]) - 1
+
+    def mesh(self, positions, normals, triangles, material):
+        attributes = {
+            "POSITION": self.array(positions, "f", "VEC3", 5126),
+            "NORMAL": self.array(normals, "f", "VEC3", 5126),
+        }
+        indices = self.array([[i] for triangle in triangles for i in triangle], "I", "SCALAR", 5125)
+        primitive = {"attributes": attributes, "indices": indices, "material": material}
+        self.model["meshes"].append({"primitives": [primitive]})
+        self.node({"mesh": len(self.model["meshes"]) - 1})
+
+    def node(self, node):
+        self.model["nodes"].append(node)
+        self.model["scenes"][0]["nodes"].append(len(self.model["nodes"]) - 1)
+
+    def rectangle(self, corner, side, other, material):
+        """Faces along side x other."""
+        normal = [side[1] * other[2] - side[2] * other[1], side[2] * other[0] - side[0] * other[2],
+                  side[0] * other[1] - side[1] * other[0]]
+        length = math.sqrt(sum(x * x for x in normal))
+        corners = [[c + i * s + j * o for c, s, o in zip(corner, side, other)]
+                   for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        self.mesh(corners, [[x / length for x in normal]] * 4, [(0, 1, 2), (0, 2, 3)], material)
+
+    def sphere(self, center, radius, material, rows=48):
+        normals = [[math.sin(a) * math.cos(b), math.cos(a), math.sin(a) * math.sin(b)]
+                   for a in (math.pi * i / rows for i in range(rows + 1))
+                   for b in (math.pi * j / rows for j in range(2 * rows + 1))]
+        width = 2 * rows + 1
+        triangles = [t for i in range(rows) for j in range(2 * rows) for p in (i * width + j,)
+                     for t in ((p, p + 1, p + width), (p + 1, p + width + 1, p + width))
+                     if len({tuple(normals[k]) for k in t}) == 3]
+        self.mesh([[c + radius * n for c, n in zip(center, normal)] for normal in normals], normals, triangles,
+                  material)
+
+    def write(self, path):
+        uri = "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
+        self.model["buffers"] = [{"uri": uri, "byteLength": len(self.bytes)}]
+        path.write_text(json.dumps(self.model))
+
+
+def write_room(path):
+    scene = Gltf()
+    white, red, green = (scene.material(c) for c in ((0.75, 0.75, 0.75), (0.6, 0.1, 0.1), (0.1, 0.5, 0.15)))
+    scene.rectangle([-2, 0, 2], [4, 0, 0], [0, 0, -4], white)  # floor
+    scene.rectangle([-2, 3, -2], [4, 0, 0], [0, 0, 4], white)  # ceiling
+    scene.rectangle([-2, 0, -2], [4, 0, 0], [0, 3, 0], white)  # back
+    scene.rectangle([-2, 0, 2], [0, 0, -4], [0, 3, 0], red)
+    scene.rectangle([2, 0, -2], [0, 0, 4], [0, 3, 0], green)
+    for x, size, light in ((-0.6, 0.8, 6.0), (1.3, 0.2, 40.0), (-1.6, 0.1, 120.0)):
+        lamp = scene.material((0, 0, 0), light=light)
+        scene.rectangle([x, 2.999, -0.4], [size, 0, 0], [0, 0, size], lamp)
+    scene.sphere([-1.1, 0.6, -0.9], 0.6, scene.material((0.9, 0.7, 0.4), 0.4, 1))
+    scene.sphere([1.1, 0.6, -0.8], 0.6, scene.material((0.95, 0.95, 0.95), 0.3, 1))
+    scene.sphere([0, 0.45, 0.4], 0.45, scene.material((0.1, 0.25, 0.6), 0.2))
+    scene.model["cameras"].append(
+        {"type": "perspective", "perspective": {"yfov": 0.75, "aspectRatio": 1, "znear": 0.1}})
+    scene.node({"camera": 0, "translation": [0, 1.4, 5.4]})
+    scene.write(path)
+
+
+def run(command):
+    done = subprocess.run([str(x) for x in command], capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"{command[0]}: {done.stderr.strip() or done.stdout.strip()}")
+    return done.stdout + done.stderr
+
+
+def render_boxwood(program, scene, threads, size, jobs):
+    """Seconds of each job."""
+    seconds = []
+    for samples, file in jobs:
+        start = time.time()
+        run([program, "render", scene, "-o", file, "--samples", samples, "--size", f"{size}x{size}", "--threads",
+             threads, "--filter", "box", "--quiet", "--checkpoint", 0])
+        seconds.append(time.time() - start)
+    return seconds
+
+
+def render_cycles(program, scene, threads, size, jobs):
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write(INSIDE_BLENDER)
+        script.flush()
+        said = run([program, "-b", "-noaudio", "-P", script.name, "--", scene, threads, size,
+                    *(x for job in jobs for x in job)])
+    return [float(found) for found in re.findall(r"^TOOK \d+ ([\d.]+)", said, re.MULTILINE)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("boxwood")
+    parser.add_argument("--blender", default="blender")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--size", type=int, default=256)
+    parser.add_argument("--samples", type=int, default=128, help="of the render that is measured")
+    parser.add_argument("--reference", type=int, default=4096, help="samples of the converged pictures")
+    parser.add_argument("--folder", default="cycles-comparison", help="where the pictures go")
+    options = parser.parse_args()
+    folder = Path(options.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    scene = folder / "room.gltf"
+    write_room(scene)
+
+    print(f"| program | ms a sample of all pixels | relative MSE of {options.samples} samples | seconds to {TARGET} |")
+    print("|---|---|---|---|")
+    for name, program, render in (("Boxwood", options.boxwood, render_boxwood),
+                                  ("Cycles", options.blender, render_cycles)):
+        few, many = options.samples // 4, options.samples
+        counts = (few, many, few, many, options.reference)
+        jobs = [(count, folder / f"{name.lower()}-{count}.exr") for count in counts]
+        seconds = render(program, scene, options.threads, options.size, jobs)
+        per_sample = (min(seconds[1], seconds[3]) - min(seconds[0], seconds[2])) / (many - few)
+        said = run([options.boxwood, "diff", jobs[1][1], jobs[4][1]])
+        error = float(re.search(r"relative MSE\s+([\d.e+-]+)", said).group(1))
+        print(f"| {name} | {1000 * per_sample:.1f} | {error:.5f} | {per_sample * many * error / TARGET:.2f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
