@@ -52,10 +52,10 @@ TEST_F(Shards, EachIsAPictureOfItsOwn) {
 TEST_F(Shards, ResumeLikeAnyRender) {
   const std::string shard = "render stilllife --size 50x30 --samples 400 --quiet --shard 2/3 ";
   ASSERT_EQ(run(shard + "-o whole.exr").exit_code, 0);
-  const Outcome killed =
-      run_shell("'" BOXWOOD_PROGRAM "' " + shard +
-                "-o part.exr --checkpoint 0.001 & job=$!; "
-                "while [ ! -e part.exr.checkpoint ]; do sleep 0.01; done; kill -KILL $job; wait $job");
+  const Outcome killed = run_shell("'" BOXWOOD_PROGRAM "' " + shard +
+                                   "-o part.exr --checkpoint 0.001 & job=$!; "
+                                   "while kill -0 $job 2>/dev/null && [ ! -e part.exr.checkpoint ]; do sleep "
+                                   "0.01; done; kill -KILL $job; wait $job");
   ASSERT_EQ(killed.exit_code, 128 + 9) << killed.err;
   ASSERT_EQ(run(shard + "-o part.exr --resume").exit_code, 0);
   EXPECT_TRUE(read("part.exr") == read("whole.exr"));
