@@ -24,7 +24,8 @@ bool is_device_or_pipe(const std::filesystem::path& path);
 
 /// Writes the bytes beside `path`, waits until they are on the disk, and renames them into place, so that
 /// `path` is never a partial file, not even after a loss of power, and keeps what it was when something
-/// fails. A link stays and the file behind it is replaced; devices and pipes are written to. Throws FileError.
+/// fails. A link stays and the file behind it is replaced; devices and pipes are written to. Throws
+/// FileError.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// The same for bytes that come in pieces: `produce` hands them to `sink`, one after another. When `produce`
