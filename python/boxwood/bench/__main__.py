@@ -91,6 +91,7 @@ def measure(question, engines, vertices, count, threads, rounds, patience, costs
                 results[engine.name] = f"differs ({wrong:.1%})"
                 continue
         running.append((engine, rays))
+    ours = answer = None  # the next results may have their memory
 
     # Short calls are repeated within a round, so that a round lasts at least some milliseconds.
     repeats = {engine.name: max(1, int(0.005 / costs[engine.name, question].seconds)) for engine, _ in running}
