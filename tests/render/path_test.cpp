@@ -467,7 +467,8 @@ TEST(Lights, DensityOfAHitIsThatOfTheSample) {
         lights.pdf(hit, surface_at(scene, ray, hit), sample->direction, {surface.position, surface.normal});
     const float cosine = std::fabs(dot(hit.normal, sample->direction));
     // Seen edge-on the density grows as 1 / cosine, of which rounding leaves four digits.
-    EXPECT_NEAR(pdf / sample->pdf, 1, max(0.01f, 1e-4f / cosine)) << "geometry " << hit.geometry_id.value << ", cosine " << cosine;
+    EXPECT_NEAR(pdf / sample->pdf, 1, max(0.01f, 1e-4f / cosine))
+        << "geometry " << hit.geometry_id.value << ", cosine " << cosine;
     EXPECT_FALSE(scene.any_hit(sample->shadow_ray)) << "geometry " << hit.geometry_id.value;
     ++found[hit.geometry_id.value];
   }
