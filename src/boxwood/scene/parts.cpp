@@ -42,6 +42,10 @@ void index_meshes(Part& part, std::size_t count) {
   if (count > 0) part.mesh_of_page.push_back(static_cast<std::uint32_t>(part.meshes.size() - 1));
 }
 
+void prefetch(const void* p) {
+  __builtin_prefetch(p);
+}
+
 /// Builds the tree over the part's meshes, for nodes of W children.
 template <int W>
 simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const BuildOptions& options,
@@ -61,16 +65,24 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   std::vector<const TriangleMesh*> mesh_of_part;
   for (const PartMesh& mesh : part.meshes)
     mesh_of_part.push_back(&std::get<TriangleMesh>(desc.geometries[mesh.geometry_id.value].shapes));
-  const auto corners_of_key = [&](PrimId key) -> simd::Corners {
+  /// Where a triangle's vertices are, and which of them it has.
+  struct Place {
+    const Vec3* vertices;
+    const std::array<std::uint32_t, 3>* indices;
+  };
+  const auto place_of_key = [&](PrimId key) -> Place {
     const PartMesh& part_mesh = part.mesh_of(key.value);
     const TriangleMesh& mesh = *mesh_of_part[std::size_t(&part_mesh - part.meshes.data())];
-    const auto& [i, j, k] = mesh.indices[key.value - part_mesh.first_key];
-    return {mesh.positions.data(), {i, j, k}};
+    return {mesh.positions.data(), &mesh.indices[key.value - part_mesh.first_key]};
+  };
+  const auto corners_at = [](const Place& place) -> simd::Corners {
+    const auto& [i, j, k] = *place.indices;
+    return {place.vertices, {i, j, k}};
   };
 
   // Build and collapse; let go of what the next step does not need.
   const Clip clip = [&](PrimId key, const Box3& region) {
-    return corners_of_key(key).triangle().clipped_box(region);
+    return corners_at(place_of_key(key)).triangle().clipped_box(region);
   };
   BuildOptions in_blocks = options;
   in_blocks.block_size = kBlockWidth;  // a block is tested at the price of one triangle
@@ -79,8 +91,17 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   WideBvh<W> wide = collapse<W>(bvh, executor);
   wide.has_parts = bvh.prim_ids.size() > count;
   bvh = {};
-  const simd::TriangleTree::Fetch fetch = [&](const PrimId* keys, simd::Corners* corners) {
-    for (int lane = 0; lane < kBlockWidth; ++lane) corners[lane] = corners_of_key(keys[lane]);
+  const simd::TriangleTree::Fetch fetch = [&](std::span<const PrimId> keys, simd::Corners* corners) {
+    // Neighbours in the tree may be far apart in the meshes: ask for all before the first is waited for.
+    Place places[simd::TriangleTree::kMaxFetch];
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      places[i] = place_of_key(keys[i]);
+      prefetch(places[i].indices);
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      corners[i] = corners_at(places[i]);
+      for (const std::uint32_t vertex : corners[i].index) prefetch(corners[i].vertices + vertex);
+    }
   };
   return simd::TriangleTree(wide, fetch, options.is_compact ? simd::Layout::compact : simd::Layout::full,
                             executor);

@@ -75,9 +75,8 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, std::span<const Triangle> tri
                            std::span<const std::uint32_t> keys, Executor& executor, Layout layout)
     : TriangleTree(
           wide,
-          [triangles](const PrimId* slots, Corners* out) {
-            for (int lane = 0; lane < kBlockWidth; ++lane)
-              out[lane] = {&triangles[slots[lane].value].a, {0, 1, 2}};
+          [triangles](std::span<const PrimId> slots, Corners* out) {
+            for (const PrimId slot : slots) *out++ = {&triangles[slot.value].a, {0, 1, 2}};
           },
           layout, executor) {
   if (keys.empty() || is_empty()) return;
@@ -132,14 +131,18 @@ void TriangleTree::pack(const WideBvh<W>& wide, const Fetch& fetch, Executor& ex
     for (ChildRef& child : node->children) child = to_units(child);
   });
 
-  // Fetch the triangles.
+  // Fetch the triangles, of many blocks at once: whoever tells the corners can then ask for memory ahead.
+  constexpr std::size_t kBlocks = kMaxFetch / kBlockWidth;
   auto* blocks = reinterpret_cast<Block*>(pool_.data() + blocks_at_);
-  parallel_for(executor, 0, block_count_, kGrain, [&](std::size_t i) {
-    Block& block = *new (blocks + i) Block;
-    const PrimId* slots = &wide.slots[i * kBlockWidth];
-    Corners corners[kBlockWidth];
+  parallel_for(executor, 0, (block_count_ + kBlocks - 1) / kBlocks, kGrain / kBlocks, [&](std::size_t part) {
+    const std::size_t first = part * kBlocks, count = std::min(kBlocks, block_count_ - first);
+    const std::span<const PrimId> slots(&wide.slots[first * kBlockWidth], count * kBlockWidth);
+    Corners corners[kMaxFetch];
     fetch(slots, corners);
-    for (int lane = 0; lane < kBlockWidth; ++lane) put(block, lane, corners[lane], slots[lane].value);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      Block& block = blocks[first + i / kBlockWidth];
+      put(block, static_cast<int>(i % kBlockWidth), corners[i], slots[i].value);
+    }
   });
 }
 

@@ -60,8 +60,9 @@ class TriangleTree {
 
   TriangleTree() = default;
 
-  /// Tells the corners of kBlockWidth slots. Called by several threads at once.
-  using Fetch = std::function<void(const PrimId* slots, Corners* corners)>;
+  /// Tells the corners of at most kMaxFetch slots. Called by several threads at once.
+  static constexpr std::size_t kMaxFetch = 128;
+  using Fetch = std::function<void(std::span<const PrimId> slots, Corners* corners)>;
 
   /// Packs `wide`; its slots pick the triangles, and are their keys. A compact tree needs the vertices as
   /// long as it lives. The executor shows in the time only. Throws std::length_error when the pool would be
