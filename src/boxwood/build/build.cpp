@@ -40,8 +40,9 @@ void check(const BuildOptions& options) {
 }
 
 /// All methods share the driver and differ in how they split a node. Whatever they keep is gone afterwards.
-Bvh grow_tree(std::span<const Box3> boxes, const BuildOptions& options, Executor& executor, Meter& meter) {
-  const Items items = collect_items(boxes, executor);
+RawBvh grow_tree(std::size_t count, const BoxSource& source, const BuildOptions& options, Executor& executor,
+                 Meter& meter) {
+  const Items items = collect_items(count, source, executor);
   const std::span<Item> full{items.full.data(), items.full.size()};
   const auto grow = [&](auto splitter, bool may_halve) {
     const auto full_count = static_cast<std::uint32_t>(items.full.size());
@@ -93,22 +94,30 @@ Progress part_of(const Progress& progress, double begin, double end) {
 
 }  // namespace
 
-Bvh build(std::span<const Box3> boxes, const BuildOptions& options) {
+RawBvh build_raw(std::size_t count, const BoxSource& source, const BuildOptions& options) {
   check(options);
-  if (boxes.size() >= kMaxPrimitives)
-    throw std::invalid_argument("build: " + std::to_string(boxes.size()) + " boxes, expected fewer than " +
+  if (count >= kMaxPrimitives)
+    throw std::invalid_argument("build: " + std::to_string(count) + " boxes, expected fewer than " +
                                 std::to_string(kMaxPrimitives));
   Executor& executor = options.executor != nullptr ? *options.executor : default_executor();
   const auto rounds = static_cast<std::size_t>(options.reinsertion_rounds);
-  Meter meter(options.progress, boxes.size() + rounds * reinsertion_work(boxes.size()));
+  Meter meter(options.progress, count + rounds * reinsertion_work(count));
   meter.advance(0);
 
-  Bvh bvh = grow_tree(boxes, options, executor, meter);
+  RawBvh bvh = grow_tree(count, source, options, executor, meter);
   if (rounds > 0)
     bvh = reinsert(std::move(bvh), {options.reinsertion_rounds, options.reinsertion_share, options.max_depth},
                    executor, meter);
   meter.finish();
   return bvh;
+}
+
+Bvh build(std::span<const Box3> boxes, const BuildOptions& options) {
+  const BoxSource source = [boxes](std::size_t begin, std::size_t end, Box3* out) {
+    std::copy(boxes.begin() + std::ptrdiff_t(begin), boxes.begin() + std::ptrdiff_t(end), out);
+  };
+  const RawBvh raw = build_raw(boxes.size(), source, options);
+  return {{raw.nodes.begin(), raw.nodes.end()}, {raw.prim_ids.begin(), raw.prim_ids.end()}};
 }
 
 Bvh build(std::span<const Box3> boxes, const Clip& clip, const BuildOptions& options) {

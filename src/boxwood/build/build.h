@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "boxwood/build/box_source.h"
 #include "boxwood/build/options.h"
+#include "boxwood/build/raw_bvh.h"
 #include "boxwood/build/spatial_split.h"
 #include "boxwood/tree/bvh.h"
 
@@ -22,6 +24,9 @@ inline constexpr std::size_t kMaxPrimitives = std::size_t(1) << 31;
 /// are kMaxPrimitives or more; Cancelled when options.progress asks for it. Cost: n log n (longest_axis: n
 /// log^2 n); memory: see build_memory_bytes.
 Bvh build(std::span<const Box3> boxes, const BuildOptions& options = {});
+
+/// The same tree for whoever does not keep the boxes, in memory that is written once.
+RawBvh build_raw(std::size_t count, const BoxSource& source, const BuildOptions& options);
 
 /// The same with spatial splits: `clip` tells the boxes of parts of primitives (spatial_split.h), and those
 /// that it pays to cut, up to options.split_share, stand in several leaves: their numbers repeat in prim_ids,

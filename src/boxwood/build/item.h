@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "boxwood/build/box_source.h"
 #include "boxwood/build/lanes.h"
 #include "boxwood/core/raw_array.h"
 #include "boxwood/core/box.h"
@@ -110,7 +111,7 @@ struct Items {
 void check_box(std::span<const Box3> boxes, std::size_t i);
 
 /// Throws std::invalid_argument, naming the first one, when a box is neither finite nor the empty box.
-Items collect_items(std::span<const Box3> boxes, Executor& executor);
+Items collect_items(std::size_t count, const BoxSource& source, Executor& executor);
 
 /// The union of `items`, and the union of their half centers.
 struct Extents {

@@ -4,7 +4,6 @@
 #include <queue>
 
 #include "boxwood/build/item.h"
-#include "boxwood/core/raw_array.h"
 
 namespace boxwood {
 namespace {
@@ -28,9 +27,9 @@ struct Task {
 /// A tree that is changed in place: a node's children still lie side by side, but anywhere.
 class Workshop {
  public:
-  Workshop(Bvh& bvh, Executor& executor)
-      : nodes_(bvh.nodes),
-        prim_ids_(bvh.prim_ids),
+  Workshop(const RawBvh& bvh, Executor& executor)
+      : nodes_(bvh.nodes.data(), bvh.nodes.size()),
+        prim_ids_(bvh.prim_ids.data(), bvh.prim_ids.size()),
         parent_(bvh.nodes.size()),
         scale_(reach_of(bvh.nodes[0].box)),
         executor_(executor) {
@@ -80,35 +79,32 @@ class Workshop {
   }
 
   /// In depth-first order; empty where that would be deeper than `max_depth`.
-  Bvh finish(int max_depth) const {
-    Bvh out;
-    out.nodes.reserve(nodes_.size());
-    advise_huge_pages(out.nodes.data(), nodes_.size() * sizeof(BvhNode));
-    out.prim_ids.reserve(prim_ids_.size());
-    advise_huge_pages(out.prim_ids.data(), prim_ids_.size() * sizeof(PrimId));
+  RawBvh finish(int max_depth) const {
+    RawBvh out{RawArray<BvhNode>(nodes_.size()), RawArray<PrimId>(prim_ids_.size())};
+    std::uint32_t next_node = 1, next_prim = 0;
     struct Place {
       std::uint32_t index;
       int depth;
     };
     std::vector<Place> waiting{{0, 0}};
-    out.nodes.push_back(nodes_[0]);
+    out.nodes[0] = nodes_[0];
     while (!waiting.empty()) {
       const auto [index, depth] = waiting.back();
       waiting.pop_back();
       if (depth > max_depth) return {};
       BvhNode& node = out.nodes[index];
       if (node.is_leaf()) {
-        const auto first = prim_ids_.begin() + node.first_index;
-        node.first_index = static_cast<std::uint32_t>(out.prim_ids.size());
-        out.prim_ids.insert(out.prim_ids.end(), first, first + node.count);
+        std::copy_n(&prim_ids_[node.first_index], node.count, &out.prim_ids[next_prim]);
+        node.first_index = next_prim;
+        next_prim += node.count;
       } else {
         // Children are noted as they were, and corrected when their turn comes.
         const BvhNode* children = &nodes_[node.first_index];
-        const auto next = static_cast<std::uint32_t>(out.nodes.size());
-        node.first_index = next;
-        out.nodes.insert(out.nodes.end(), children, children + 2);
-        waiting.push_back({next + 1, depth + 1});
-        waiting.push_back({next, depth + 1});
+        node.first_index = next_node;
+        std::copy_n(children, 2, &out.nodes[next_node]);
+        waiting.push_back({next_node + 1, depth + 1});
+        waiting.push_back({next_node, depth + 1});
+        next_node += 2;
       }
     }
     return out;
@@ -227,8 +223,8 @@ class Workshop {
     nodes_[i].box = unite(nodes_[nodes_[i].first_index].box, nodes_[nodes_[i].first_index + 1].box);
   }
 
-  std::vector<BvhNode>& nodes_;
-  const std::vector<PrimId>& prim_ids_;
+  const std::span<BvhNode> nodes_;
+  const std::span<const PrimId> prim_ids_;
   RawArray<std::uint32_t> parent_;
   const Scale scale_;
   Executor& executor_;
@@ -238,7 +234,7 @@ class Workshop {
 
 }  // namespace
 
-Bvh reinsert(Bvh bvh, const Reinsertion& how, Executor& executor, Meter& meter) {
+RawBvh reinsert(RawBvh bvh, const Reinsertion& how, Executor& executor, Meter& meter) {
   if (bvh.nodes.size() < 7) return bvh;
   Workshop workshop(bvh, executor);
   const auto tries = static_cast<std::size_t>(how.share * float(bvh.nodes.size())) + 1;
@@ -250,8 +246,8 @@ Bvh reinsert(Bvh bvh, const Reinsertion& how, Executor& executor, Meter& meter) 
     if (now == 0) break;
   }
   if (moved == 0) return bvh;
-  Bvh better = workshop.finish(how.max_depth);
-  if (!better.is_empty()) return better;
+  RawBvh better = workshop.finish(how.max_depth);
+  if (better.nodes.size() > 0) return better;
   workshop.undo();
   return bvh;
 }

@@ -13,7 +13,7 @@
 
 #include "boxwood/build/meter.h"
 #include "boxwood/core/parallel.h"
-#include "boxwood/tree/bvh.h"
+#include "boxwood/build/raw_bvh.h"
 
 namespace boxwood {
 
@@ -31,6 +31,6 @@ inline std::size_t reinsertion_work(std::size_t primitives) {
 /// A tree over the same leaves, in depth-first order; expects one in that order. Cost: for each subtree that
 /// is tried, a search that ends where nothing is to be gained, or after a few hundred nodes. Throws
 /// Cancelled.
-Bvh reinsert(Bvh bvh, const Reinsertion& how, Executor& executor, Meter& meter);
+RawBvh reinsert(RawBvh bvh, const Reinsertion& how, Executor& executor, Meter& meter);
 
 }  // namespace boxwood

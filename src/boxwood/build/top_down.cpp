@@ -3,21 +3,16 @@
 #include <algorithm>
 #include <cstring>
 
-#include "boxwood/core/raw_array.h"
-
 namespace boxwood {
 
-std::vector<BvhNode> in_order(const BvhNode* nodes, std::vector<NodeRun> runs, Executor& executor) {
+RawArray<BvhNode> in_order(const BvhNode* nodes, std::vector<NodeRun> runs, Executor& executor) {
   // Runs were noted as they were made: bring them into the order of their numbers, and count what lies
   // before.
   std::sort(runs.begin(), runs.end(), [](NodeRun a, NodeRun b) { return a.begin < b.begin; });
   std::vector<std::uint32_t> moved_to(runs.size() + 1, 0);
   for (std::size_t i = 0; i < runs.size(); ++i) moved_to[i + 1] = moved_to[i] + runs[i].count;
 
-  std::vector<BvhNode> dense;
-  dense.reserve(moved_to.back());
-  advise_huge_pages(dense.data(), moved_to.back() * sizeof(BvhNode));
-  dense.resize(moved_to.back());
+  RawArray<BvhNode> dense(moved_to.back());
   parallel_for(executor, 0, runs.size(), 1, [&](std::size_t i) {
     const NodeRun run = runs[i];
     for (std::uint32_t k = 0; k < run.count; ++k) {

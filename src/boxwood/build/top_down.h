@@ -24,8 +24,7 @@
 #include "boxwood/build/item.h"
 #include "boxwood/build/meter.h"
 #include "boxwood/build/options.h"
-#include "boxwood/core/raw_array.h"
-#include "boxwood/tree/bvh.h"
+#include "boxwood/build/raw_bvh.h"
 
 namespace boxwood {
 
@@ -70,7 +69,7 @@ struct NodeRun {
 };
 
 /// Puts the runs of `nodes` in the order of their numbers; children are found where they went.
-std::vector<BvhNode> in_order(const BvhNode* nodes, std::vector<NodeRun> runs, Executor& executor);
+RawArray<BvhNode> in_order(const BvhNode* nodes, std::vector<NodeRun> runs, Executor& executor);
 
 template <Splitter S>
 class TopDown {
@@ -86,13 +85,13 @@ class TopDown {
         executor_(executor),
         meter_(meter) {}
 
-  Bvh run() {
-    Bvh bvh;
+  RawBvh run() {
+    RawBvh bvh;
     const auto count = full_count_ + static_cast<std::uint32_t>(empty_boxes_.size());
     if (count == 0) return bvh;
     nodes_ = RawArray<BvhNode>(2 * std::size_t(count) - 1);
-    bvh.prim_ids.resize(count);
-    prim_ids_ = bvh.prim_ids;
+    bvh.prim_ids = RawArray<PrimId>(count);
+    prim_ids_ = {bvh.prim_ids.data(), count};
     runs_.push_back({0, 1, 0});
     taken_ = 1;
     grow(nodes_[0], 1, {0, count}, 0, splitter_.root());

@@ -6,14 +6,11 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <type_traits>
-#include <utility>
+
+#include "boxwood/core/memory_block.h"
 
 namespace boxwood {
-
-/// Asks the system to back `bytes` from `begin` on by huge pages, where it knows such a thing.
-void advise_huge_pages(void* begin, std::size_t bytes);
 
 /// Room for things that need neither to be made nor to be destroyed. Reading one before it was written is an
 /// error.
@@ -23,15 +20,17 @@ class RawArray {
 
  public:
   RawArray() = default;
-  explicit RawArray(std::size_t size) : size_(size) {
-    if (size == 0) return;
-    const std::size_t bytes = size * sizeof(T);
-    memory_.reset(static_cast<T*>(::operator new(bytes, kAlignment)));
-    advise_huge_pages(memory_.get(), bytes);
+  explicit RawArray(std::size_t size) : memory_(size * sizeof(T), 64), size_(size) {}
+  RawArray(RawArray&& other) noexcept
+      : memory_(std::move(other.memory_)), size_(std::exchange(other.size_, 0)) {}
+  RawArray& operator=(RawArray&& other) noexcept {
+    std::swap(memory_, other.memory_);
+    std::swap(size_, other.size_);
+    return *this;
   }
 
   std::size_t size() const { return size_; }
-  T* data() const { return memory_.get(); }
+  T* data() const { return reinterpret_cast<T*>(memory_.data()); }
   T* begin() const { return data(); }
   T* end() const { return data() + size_; }
   T& operator[](std::size_t i) const { return data()[i]; }
@@ -39,11 +38,7 @@ class RawArray {
   void shrink(std::size_t size) { size_ = size; }
 
  private:
-  static constexpr std::align_val_t kAlignment{64};
-  struct Free {
-    void operator()(T* memory) const { ::operator delete(memory, kAlignment); }
-  };
-  std::unique_ptr<T, Free> memory_;
+  MemoryBlock memory_;
   std::size_t size_ = 0;
 };
 

@@ -13,6 +13,16 @@ namespace {
 
 constexpr std::size_t kGrain = 1 << 14;
 
+/// Addresses, not memory: a build has less than that at any time.
+constexpr std::size_t kWorkspacePerTriangle = 512;
+
+std::size_t triangle_count(const SceneDesc& desc) {
+  std::size_t count = 0;
+  for (const Geometry& geometry : desc.geometries)
+    if (std::holds_alternative<TriangleMesh>(geometry.shapes)) count += primitive_count(geometry);
+  return count;
+}
+
 /// Adds the primitives of one geometry, as one instance shows them, to a part: meshes as a whole, for
 /// build_triangles. `triangle_count` counts along.
 void add_geometry(Part& part, std::size_t& triangle_count, const SceneDesc& desc, GeometryId geometry_id,
@@ -55,13 +65,6 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
   std::size_t count = 0;
   for (const PartMesh& mesh : part.meshes) count += primitive_count(desc.geometries[mesh.geometry_id.value]);
   index_meshes(part, count);
-  RawArray<Box3> boxes(count);
-  for (const PartMesh& part_mesh : part.meshes) {
-    const auto& mesh = std::get<TriangleMesh>(desc.geometries[part_mesh.geometry_id.value].shapes);
-    parallel_for(executor, 0, mesh.indices.size(), kGrain,
-                 [&](std::size_t i) { boxes[part_mesh.first_key + i] = triangle_of(mesh, PrimId(i)).box(); });
-  }
-
   std::vector<const TriangleMesh*> mesh_of_part;
   for (const PartMesh& mesh : part.meshes)
     mesh_of_part.push_back(&std::get<TriangleMesh>(desc.geometries[mesh.geometry_id.value].shapes));
@@ -80,17 +83,37 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
     return {place.vertices, {i, j, k}};
   };
 
-  // Build and collapse; let go of what the next step does not need.
-  const Clip clip = [&](PrimId key, const Box3& region) {
-    return corners_at(place_of_key(key)).triangle().clipped_box(region);
+  const BoxSource source = [&](std::size_t begin, std::size_t end, Box3* boxes) {
+    while (begin < end) {
+      const PartMesh& part_mesh = part.mesh_of(static_cast<std::uint32_t>(begin));
+      const TriangleMesh& mesh = *mesh_of_part[std::size_t(&part_mesh - part.meshes.data())];
+      const std::size_t first = part_mesh.first_key, stop = std::min(end, first + mesh.indices.size());
+      for (; begin < stop; ++begin) *boxes++ = triangle_of(mesh, PrimId(begin - first)).box();
+    }
   };
+
+  // Build and collapse; let go of what the next step does not need.
   BuildOptions in_blocks = options;
   in_blocks.block_size = kBlockWidth;  // a block is tested at the price of one triangle
-  Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, in_blocks);
-  boxes = {};
-  WideBvh<W> wide = collapse<W>(bvh, executor);
-  wide.has_parts = bvh.prim_ids.size() > count;
-  bvh = {};
+  WideBvh<W> wide;
+  if (options.split_share > 0) {
+    RawArray<Box3> boxes(count);
+    parallel_for(executor, 0, (count + kSourceBlock - 1) / kSourceBlock, kGrain / kSourceBlock,
+                 [&](std::size_t block) {
+                   const std::size_t begin = block * kSourceBlock;
+                   source(begin, std::min(count, begin + kSourceBlock), &boxes[begin]);
+                 });
+    const Clip clip = [&](PrimId key, const Box3& region) {
+      return corners_at(place_of_key(key)).triangle().clipped_box(region);
+    };
+    const Bvh bvh = build(std::span<const Box3>(boxes.data(), count), clip, in_blocks);
+    boxes = {};
+    wide = collapse<W>(bvh, executor);
+    wide.has_parts = bvh.prim_ids.size() > count;
+  } else {
+    const RawBvh bvh = build_raw(count, source, in_blocks);
+    wide = collapse<W>(bvh.view(), executor);
+  }
   const simd::TriangleTree::Fetch fetch = [&](std::span<const PrimId> keys, simd::Corners* corners) {
     // Neighbours in the tree may be far apart in the meshes: ask for all before the first is waited for.
     Place places[simd::TriangleTree::kMaxFetch];
@@ -156,6 +179,7 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   const auto start = std::chrono::steady_clock::now();
   Executor& executor = options.executor ? *options.executor : default_executor();
   check(desc, executor);
+  const Workspace workspace(kWorkspacePerTriangle * triangle_count(desc));
 
   auto parts = std::make_unique<Scene::Parts>();
   parts->desc = std::move(desc);

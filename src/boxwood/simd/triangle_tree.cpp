@@ -102,7 +102,8 @@ TriangleTree::TriangleTree(const WideBvh<W>& wide, const Fetch& fetch, Layout la
   const std::size_t size = blocks_at_ + block_count_ * block_bytes();
   if (size >= std::uint64_t(kUnit) << 28)
     throw std::length_error("the tree and its triangles need more than 8 GB, which 28 bits cannot address");
-  pool_ = HugeBuffer(size);
+  constexpr std::size_t kHugePage = std::size_t(2) << 20;
+  pool_ = MemoryBlock(size, size >= kHugePage ? kHugePage : 64);
   is_ordinary_ = max(max_component(abs(box_.lower)), max_component(abs(box_.upper))) <= kLargestReach;
   const Reach reach = find_reach(wide, layout);
   if (reach.depth > kMaxWideDepth)

@@ -1,6 +1,7 @@
 // triangle_tree.h: what do the kernels walk?
 //
-// A wide tree (tree/wide.h) and its triangles, in one pool of memory: first the nodes, then the blocks. A
+// A wide tree (tree/wide.h) and its triangles, in one pool of memory: first the nodes, then the blocks. A large pool
+// is aligned to a huge page and backed by such, because a walk jumps about and would miss the TLB at every step. A
 // reference counts in units of 32 bytes, so the address of what it names is two shifts away, and a reference
 // to a node is half of its offset. There are two layouts. In full, a block holds four triangles coordinate by
 // coordinate, so that one vector is the same coordinate of all four. The compact one takes half the memory:
@@ -11,10 +12,10 @@
 #include <functional>
 #include <span>
 
+#include "boxwood/core/memory_block.h"
 #include "boxwood/core/parallel.h"
 #include "boxwood/shape/gate.h"
 #include "boxwood/shape/triangle.h"
-#include "boxwood/simd/huge_buffer.h"
 #include "boxwood/tree/quantized.h"
 
 namespace boxwood::simd {
@@ -147,7 +148,7 @@ class TriangleTree {
   }
   static TriangleBlock expand(const CompactBlock& compact);
 
-  HugeBuffer pool_;
+  MemoryBlock pool_;
   Layout layout_ = Layout::full;
   std::size_t blocks_at_ = 0, node_count_ = 0, block_count_ = 0;
   int width_ = 8, max_stack_ = 0;

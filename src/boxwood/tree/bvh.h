@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "boxwood/core/box.h"
@@ -42,6 +43,18 @@ struct Bvh {
   Box3 bounds() const { return nodes.empty() ? Box3{} : nodes[0].box; }
   std::size_t size_bytes() const { return nodes.size() * sizeof(BvhNode) + prim_ids.size() * sizeof(PrimId); }
   friend bool operator==(const Bvh&, const Bvh&) = default;
+};
+
+/// The same, wherever it lies; its invariants 2 and 6 are those of whoever made it.
+struct BvhView {
+  std::span<const BvhNode> nodes;
+  std::span<const PrimId> prim_ids;
+
+  BvhView(std::span<const BvhNode> all_nodes, std::span<const PrimId> ids)
+      : nodes(all_nodes), prim_ids(ids) {}
+  BvhView(const Bvh& bvh) : nodes(bvh.nodes), prim_ids(bvh.prim_ids) {}
+  bool is_empty() const { return nodes.empty(); }
+  Box3 bounds() const { return nodes.empty() ? Box3{} : nodes[0].box; }
 };
 
 }  // namespace boxwood

@@ -32,7 +32,7 @@ struct Piece {
 template <int W>
 class Collapser {
  public:
-  Collapser(const Bvh& bvh, Executor& executor, WideCost cost)
+  Collapser(const BvhView& bvh, Executor& executor, WideCost cost)
       : bvh_(bvh), executor_(executor), cost_(cost), plans_(bvh.nodes.size()) {}
 
   WideBvh<W> run() {
@@ -290,7 +290,7 @@ class Collapser {
     return wide;
   }
 
-  const Bvh& bvh_;
+  const BvhView bvh_;
   Executor& executor_;
   const WideCost cost_;
   const RawArray<Plan<W>> plans_;  ///< A plan for each binary node.
@@ -300,11 +300,11 @@ class Collapser {
 }  // namespace
 
 template <int W>
-WideBvh<W> collapse(const Bvh& bvh, Executor& executor, WideCost cost) {
+WideBvh<W> collapse(const BvhView& bvh, Executor& executor, WideCost cost) {
   return Collapser<W>(bvh, executor, cost).run();
 }
 
-template WideBvh<4> collapse<4>(const Bvh&, Executor&, WideCost);
-template WideBvh<8> collapse<8>(const Bvh&, Executor&, WideCost);
+template WideBvh<4> collapse<4>(const BvhView&, Executor&, WideCost);
+template WideBvh<8> collapse<8>(const BvhView&, Executor&, WideCost);
 
 }  // namespace boxwood

@@ -24,9 +24,9 @@ struct WideCost {
 /// with an empty box are left out. The result does not depend on the executor. Throws std::length_error when
 /// the tree needs 2^28 nodes or blocks or more. Cost: linear.
 template <int W>
-WideBvh<W> collapse(const Bvh& bvh, Executor& executor, WideCost cost = {});
+WideBvh<W> collapse(const BvhView& bvh, Executor& executor, WideCost cost = {});
 
-extern template WideBvh<4> collapse<4>(const Bvh&, Executor&, WideCost);
-extern template WideBvh<8> collapse<8>(const Bvh&, Executor&, WideCost);
+extern template WideBvh<4> collapse<4>(const BvhView&, Executor&, WideCost);
+extern template WideBvh<8> collapse<8>(const BvhView&, Executor&, WideCost);
 
 }  // namespace boxwood
