@@ -55,8 +55,12 @@ RawBvh grow_tree(std::size_t count, const BoxSource& source, const BuildOptions&
       return grow(BinnedSahSplitter(items, options, executor), true);
     case Method::sweep_sah:
       return grow(SweepSahSplitter(full, options, executor), true);
-    case Method::ploc:
-      return grow(PlocSplitter(items, options, executor, meter), true);
+    case Method::ploc: {
+      PlocSplitter clusters(items, options, executor, meter);
+      if (full.empty() || !items.empty_boxes.empty() || clusters.height() > options.max_depth)
+        return grow(std::move(clusters), true);
+      return clusters.tree(executor, meter);
+    }
   }
   throw std::invalid_argument("build: method is " + std::to_string(static_cast<int>(options.method)) +
                               ", expected longest_axis, binned_sah, sweep_sah or ploc");

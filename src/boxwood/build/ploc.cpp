@@ -9,6 +9,9 @@ namespace {
 /// Clusters of a chunk, and how many may be left of it for the next phase.
 constexpr std::uint32_t kChunk = 1024, kEnough = 64;
 
+/// Subtrees of fewer primitives are written by one thread.
+constexpr std::uint32_t kTaskSize = 4096;
+
 }  // namespace
 
 /// The clusters of one chunk, side by side.
@@ -147,7 +150,13 @@ void PlocSplitter::merge_chunk(Row& row, std::uint32_t enough, std::uint32_t fir
       both.extend(row.reach(j));
       const std::uint32_t primitives = row.count[i] + row.count[j];
       Pair& pair = pairs_[next_pair];
-      pair = {both.box(), row.cluster[i], row.cluster[j], primitives, 0, false};
+      const std::uint32_t left = row.cluster[i], right = row.cluster[j];
+      pair.box = both.box();
+      pair.left = left;
+      pair.right = right;
+      pair.count = primitives;
+      pair.cost = 0;
+      pair.is_leaf = false;
       if (primitives <= leaf_size_) {
         const double area = scale_.area(both);
         const double as_leaf = cost_.leaf(area, primitives);
@@ -155,10 +164,55 @@ void PlocSplitter::merge_chunk(Row& row, std::uint32_t enough, std::uint32_t fir
         pair.is_leaf = as_leaf <= as_pair;
         pair.cost = static_cast<float>(std::min(as_leaf, as_pair));
       }
+      pair.nodes_below = pair.is_leaf ? 0 : 2 + nodes_below(left) + nodes_below(right);
+      pair.height = static_cast<std::uint8_t>(
+          pair.is_leaf ? 0 : std::min(1 + std::max(height_of(left), height_of(right)), 255));
       row.set(end++, next_pair++, primitives, pair.cost, both);
     }
     row.close(end);
   }
+}
+
+RawBvh PlocSplitter::tree(Executor& executor, Meter& meter) const {
+  RawBvh bvh{RawArray<BvhNode>(1 + std::size_t(nodes_below(root_))), RawArray<PrimId>(items_.full.size())};
+  write_subtree(bvh, 0, root_, {1, 0}, executor, meter);
+  return bvh;
+}
+
+void PlocSplitter::write_subtree(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster, Slot slot,
+                                 Executor& executor, Meter& meter) const {
+  const std::uint32_t count = count_of(cluster);
+  if (count <= kTaskSize || is_group(cluster) || pairs_[cluster].is_leaf) {
+    write_small(bvh, node_index, cluster, slot);
+    return meter.advance(count);
+  }
+  meter.advance(0);
+  const std::uint32_t left = pairs_[cluster].left, right = pairs_[cluster].right;
+  bvh.nodes[node_index] = {pairs_[cluster].box, slot.base, 0};
+  const Slot to_left{slot.base + 2, slot.first_prim};
+  const Slot to_right{to_left.base + nodes_below(left), slot.first_prim + count_of(left)};
+  executor.both([&] { write_subtree(bvh, slot.base, left, to_left, executor, meter); },
+                [&] { write_subtree(bvh, slot.base + 1, right, to_right, executor, meter); });
+}
+
+void PlocSplitter::write_small(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster,
+                               Slot slot) const {
+  if (is_group(cluster)) {
+    const Group& leaf = group(cluster);
+    bvh.nodes[node_index] = {leaf.reach().box(), slot.first_prim, size_of(leaf)};
+    std::copy_n(order_.ids.data() + first_of(leaf), size_of(leaf), &bvh.prim_ids[slot.first_prim]);
+    return;
+  }
+  const Pair& pair = pairs_[cluster];
+  if (pair.is_leaf) {
+    bvh.nodes[node_index] = {pair.box, slot.first_prim, pair.count};
+    write_members(cluster, &bvh.prim_ids[slot.first_prim]);
+    return;
+  }
+  bvh.nodes[node_index] = {pair.box, slot.base, 0};
+  write_small(bvh, slot.base, pair.left, {slot.base + 2, slot.first_prim});
+  write_small(bvh, slot.base + 1, pair.right,
+              {slot.base + 2 + nodes_below(pair.left), slot.first_prim + count_of(pair.left)});
 }
 
 Step<PlocSplitter::Share> PlocSplitter::step(Range range, Plan plan, const Share& share) {

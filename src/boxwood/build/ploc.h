@@ -17,8 +17,8 @@
 
 namespace boxwood {
 
-/// Makes all clusters, then hands them to the driver from the top. Cost: linear. Where they lie deeper than
-/// the driver allows, ranges are halved in the clusters' own order.
+/// Makes all clusters, then writes them down as a tree. Cost: linear. Where they lie deeper than is allowed,
+/// the driver (top_down.h) does that, and halves ranges in the clusters' own order.
 class PlocSplitter {
  public:
   struct Share {
@@ -28,6 +28,13 @@ class PlocSplitter {
 
   /// Throws Cancelled.
   PlocSplitter(const Items& items, const BuildOptions& options, Executor& executor, Meter& meter);
+
+  /// Levels below the root.
+  int height() const { return is_group(root_) ? 0 : pairs_[root_].height; }
+  /// The clusters as a tree, in depth-first order; each cluster knows how many nodes it takes. Precondition:
+  /// there is at least one item.
+  RawBvh tree(Executor& executor, Meter& meter) const;
+
   Share root() const { return {root_}; }
   Step<Share> step(Range range, Plan plan, const Share& share);
   void write_leaf(Range range, const Share& share, std::span<PrimId> out) const;
@@ -39,7 +46,13 @@ class PlocSplitter {
     std::uint32_t left, right;
     std::uint32_t count;  ///< Primitives.
     float cost;           ///< SAH, areas as in Scale; known where a leaf could hold them.
+    std::uint32_t nodes_below;
+    std::uint8_t height;  ///< Levels below; 255 also stands for more.
     bool is_leaf;         ///< Few enough, and better tested all at once.
+  };
+  /// Where a subtree is written: its descendants from node `base` on, its primitives from `first_prim` on.
+  struct Slot {
+    std::uint32_t base, first_prim;
   };
   class Row;
 
@@ -51,6 +64,13 @@ class PlocSplitter {
   std::uint32_t count_of(std::uint32_t cluster) const {
     return is_group(cluster) ? size_of(group(cluster)) : pairs_[cluster].count;
   }
+  std::uint32_t nodes_below(std::uint32_t cluster) const {
+    return is_group(cluster) ? 0 : pairs_[cluster].nodes_below;
+  }
+  int height_of(std::uint32_t cluster) const { return is_group(cluster) ? 0 : pairs_[cluster].height; }
+  void write_subtree(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster, Slot slot,
+                     Executor& executor, Meter& meter) const;
+  void write_small(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster, Slot slot) const;
   Box3 box_of(std::span<const PrimId> ids) const;
   /// Writes the primitives below a cluster, from left to right; returns the place behind the last.
   PrimId* write_members(std::uint32_t cluster, PrimId* out) const;
