@@ -39,10 +39,10 @@ void check(const BuildOptions& options) {
                                 ", expected a finite number that is not negative");
 }
 
-/// All methods share the driver and differ in how they split a node. Whatever they keep is gone afterwards.
+/// The methods that split from the top share the driver. Whatever they keep is gone afterwards.
 RawBvh grow_tree(std::size_t count, const BoxSource& source, const BuildOptions& options, Executor& executor,
                  Meter& meter) {
-  const Items items = collect_items(count, source, executor);
+  Items items = collect_items(count, source, executor);
   const std::span<Item> full{items.full.data(), items.full.size()};
   const auto grow = [&](auto splitter, bool may_halve) {
     const auto full_count = static_cast<std::uint32_t>(items.full.size());
@@ -56,10 +56,9 @@ RawBvh grow_tree(std::size_t count, const BoxSource& source, const BuildOptions&
     case Method::sweep_sah:
       return grow(SweepSahSplitter(full, options, executor), true);
     case Method::ploc: {
-      PlocSplitter clusters(items, options, executor, meter);
-      if (full.empty() || !items.empty_boxes.empty() || clusters.height() > options.max_depth)
-        return grow(std::move(clusters), true);
-      return clusters.tree(executor, meter);
+      PlocBuilder clusters(items, options, executor, meter);
+      items.full = {};
+      return clusters.tree(items.empty_boxes, source, executor, meter);
     }
   }
   throw std::invalid_argument("build: method is " + std::to_string(static_cast<int>(options.method)) +

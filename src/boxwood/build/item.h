@@ -13,10 +13,10 @@
 
 #include "boxwood/build/box_source.h"
 #include "boxwood/build/lanes.h"
-#include "boxwood/core/raw_array.h"
 #include "boxwood/core/box.h"
 #include "boxwood/core/id.h"
 #include "boxwood/core/parallel.h"
+#include "boxwood/core/raw_array.h"
 
 namespace boxwood {
 

@@ -25,8 +25,9 @@ double working_bytes(Method method) {
       // On three axes an order, a scratch order and areas; and who goes left.
       return 3 * (4 + 4 + 8) + 1;
     case Method::ploc:
-      // Ids in order, a list for halving, groups, and a little more pairs than groups, of 44 bytes.
-      return 2 * kId + kItem + 1.1 * 44;
+      // Ids in order, groups, and a little more pairs than groups, of 48 bytes; the items are gone when the
+      // tree is written.
+      return kId + 1.1 * 48;
   }
   return 0;
 }
@@ -35,15 +36,22 @@ double bytes_for(double count, const BuildOptions& options) {
   const int threads =
       options.executor != nullptr ? options.executor->concurrency() : default_executor().concurrency();
 
-  // The nodes as they were made and in order stand side by side for a moment.
-  const double growing = kItem + working_bytes(options.method) + kNodes + kTree;
+  // The nodes as they were made and in order stand side by side for a moment; clusters are written in order.
+  const double growing =
+      kItem + working_bytes(options.method) + (options.method == Method::ploc ? 0 : kNodes) + kTree;
   // Later the tree is changed, with a parent for each node, and put in order again.
   const double tries = options.reinsertion_rounds > 0 ? 2 * options.reinsertion_share : 0;
   const double reinserting = 2 * kTree + 8 + tries * (32 + 256.0 * options.reinsertion_rounds);
-  // Counters of blocks, keys while they are sorted, and what each thread works on.
-  const double per_thread = options.method == Method::ploc ? std::min(400e3, 64 * count) : 0;
-  return count * (std::max(growing, options.reinsertion_rounds > 0 ? reinserting : 0.0) + kKey) +
-         threads * per_thread + 64e3;
+  // Before there are clusters, items, keys and groups, those before they are in order too, and what each
+  // thread works on.
+  constexpr double kBlock = 1 << 13;
+  const double at_once = std::min<double>(threads, 1 + count / kBlock);
+  const double ordering = options.method == Method::ploc
+                              ? count * (3 * kItem + kId) + at_once * 2 * kItem * std::min(kBlock, count)
+                              : 0;
+  // Counters of blocks, and keys while they are sorted.
+  return std::max(ordering, count * std::max(growing, options.reinsertion_rounds > 0 ? reinserting : 0.0)) +
+         count * kKey + 64e3;
 }
 
 }  // namespace

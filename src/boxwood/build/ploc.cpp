@@ -1,6 +1,7 @@
 #include "boxwood/build/ploc.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace boxwood {
@@ -15,7 +16,7 @@ constexpr std::uint32_t kTaskSize = 4096;
 }  // namespace
 
 /// The clusters of one chunk, side by side.
-class PlocSplitter::Row {
+class PlocBuilder::Row {
  public:
   Row() : planes_(6 * kStride) {
     for (int k = 0; k < 6; ++k) {
@@ -59,19 +60,18 @@ class PlocSplitter::Row {
   RawArray<float> planes_;
 };
 
-PlocSplitter::PlocSplitter(const Items& items, const BuildOptions& options, Executor& executor, Meter& meter)
-    : items_(items),
-      leaf_size_(static_cast<std::uint32_t>(options.leaf_size)),
+PlocBuilder::PlocBuilder(const Items& items, const BuildOptions& options, Executor& executor, Meter& meter)
+    : leaf_size_(static_cast<std::uint32_t>(options.leaf_size)),
+      max_depth_(options.max_depth),
       cost_{options.traversal_cost, static_cast<std::uint32_t>(options.block_size)},
-      scale_(items.bounds.box),
-      list_(items.full.size()) {
+      scale_(items.bounds.box) {
   if (items.full.size() == 0) return;
   order_ = in_morton_order({items.full.data(), items.full.size()}, items.bounds.centers,
                            std::min(leaf_size_, std::min(cost_.block, 8u)), Keep::ids, executor);
   merge_all(executor, meter);
 }
 
-void PlocSplitter::merge_all(Executor& executor, Meter& meter) {
+void PlocBuilder::merge_all(Executor& executor, Meter& meter) {
   // As many pairs as all phases can make: each chunk at most one less than it has clusters.
   const auto groups = static_cast<std::uint32_t>(order_.groups.size());
   const auto chunks_of = [](std::size_t clusters) { return (clusters + kChunk - 1) / kChunk; };
@@ -107,7 +107,7 @@ void PlocSplitter::merge_all(Executor& executor, Meter& meter) {
   root_ = clusters[0];
 }
 
-void PlocSplitter::fill(Row& row, const std::uint32_t* clusters, std::uint32_t count) const {
+void PlocBuilder::fill(Row& row, const std::uint32_t* clusters, std::uint32_t count) const {
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t c = clusters[i];
     if (is_group(c)) {
@@ -124,7 +124,7 @@ void PlocSplitter::fill(Row& row, const std::uint32_t* clusters, std::uint32_t c
   row.close(count);
 }
 
-void PlocSplitter::merge_chunk(Row& row, std::uint32_t enough, std::uint32_t first_pair) {
+void PlocBuilder::merge_chunk(Row& row, std::uint32_t enough, std::uint32_t first_pair) {
   std::uint32_t next_pair = first_pair;
   while (row.boxes.count > enough) {
     const std::uint32_t count = row.boxes.count;
@@ -156,110 +156,157 @@ void PlocSplitter::merge_chunk(Row& row, std::uint32_t enough, std::uint32_t fir
       pair.right = right;
       pair.count = primitives;
       pair.cost = 0;
-      pair.is_leaf = false;
+      pair.kind = Pair::Kind::pair;
       if (primitives <= leaf_size_) {
         const double area = scale_.area(both);
         const double as_leaf = cost_.leaf(area, primitives);
         const double as_pair = cost_.split(area, double(row.cost[i]) + row.cost[j]);
-        pair.is_leaf = as_leaf <= as_pair;
+        if (as_leaf <= as_pair) pair.kind = Pair::Kind::leaf;
         pair.cost = static_cast<float>(std::min(as_leaf, as_pair));
       }
-      pair.nodes_below = pair.is_leaf ? 0 : 2 + nodes_below(left) + nodes_below(right);
+      const bool is_leaf = pair.kind == Pair::Kind::leaf;
+      pair.nodes_below = is_leaf ? 0 : 2 + nodes_below(left) + nodes_below(right);
       pair.height = static_cast<std::uint8_t>(
-          pair.is_leaf ? 0 : std::min(1 + std::max(height_of(left), height_of(right)), 255));
+          is_leaf ? 0 : std::min(1 + std::max(height_of(left), height_of(right)), 255));
       row.set(end++, next_pair++, primitives, pair.cost, both);
     }
     row.close(end);
   }
 }
 
-RawBvh PlocSplitter::tree(Executor& executor, Meter& meter) const {
-  RawBvh bvh{RawArray<BvhNode>(1 + std::size_t(nodes_below(root_))), RawArray<PrimId>(items_.full.size())};
-  write_subtree(bvh, 0, root_, {1, 0}, executor, meter);
+RawBvh PlocBuilder::tree(std::span<const PrimId> empty_boxes, const BoxSource& source, Executor& executor,
+                         Meter& meter) {
+  const auto full = static_cast<std::uint32_t>(order_.ids.size());
+  const auto empty = static_cast<std::uint32_t>(empty_boxes.size());
+  RawBvh bvh;
+  if (full + empty == 0) return bvh;
+  bvh.prim_ids = RawArray<PrimId>(std::size_t(full) + empty);
+  std::copy(empty_boxes.begin(), empty_boxes.end(), bvh.prim_ids.begin() + full);
+
+  // One kind of primitives: they are the tree.
+  const auto count_full = [&](int levels) {
+    if (height_of(root_) > levels) keep_within(root_, levels);
+    return nodes_below(root_);
+  };
+  if (full == 0) {
+    bvh.nodes = RawArray<BvhNode>(1 + nodes_below_halved(empty, max_depth_));
+    write_halved(bvh, empty, {0, 1, 0}, max_depth_, nullptr);
+    return bvh;
+  }
+  if (empty == 0) {
+    bvh.nodes = RawArray<BvhNode>(1 + std::size_t(count_full(max_depth_)));
+    write(bvh, root_, {0, 1, 0}, max_depth_, source, executor, meter);
+    return bvh;
+  }
+
+  // Both: side by side.
+  const Box3 box = is_group(root_) ? group(root_).reach().box() : pairs_[root_].box;
+  if (max_depth_ == 0) {
+    bvh.nodes = RawArray<BvhNode>(1);
+    bvh.nodes[0] = {box, 0, full + empty};
+    write_members(root_, bvh.prim_ids.data());
+    return bvh;
+  }
+  const std::uint32_t below = count_full(max_depth_ - 1);
+  bvh.nodes = RawArray<BvhNode>(3 + std::size_t(below) + nodes_below_halved(empty, max_depth_ - 1));
+  bvh.nodes[0] = {box, 1, 0};
+  write(bvh, root_, {1, 3, 0}, max_depth_ - 1, source, executor, meter);
+  write_halved(bvh, empty, {2, 3 + below, full}, max_depth_ - 1, nullptr);
   return bvh;
 }
 
-void PlocSplitter::write_subtree(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster, Slot slot,
-                                 Executor& executor, Meter& meter) const {
+void PlocBuilder::keep_within(std::uint32_t cluster, int levels) {
+  if (height_of(cluster) <= levels) return;
+  Pair& pair = pairs_[cluster];
+  const std::uint32_t leaves = (pair.count - 1) / leaf_size_ + 1;
+  if (levels <= static_cast<int>(std::bit_width(leaves - 1))) {
+    pair.kind = Pair::Kind::halved;
+    pair.nodes_below = nodes_below_halved(pair.count, levels);
+    return;
+  }
+  keep_within(pair.left, levels - 1);
+  keep_within(pair.right, levels - 1);
+  pair.nodes_below = 2 + nodes_below(pair.left) + nodes_below(pair.right);
+}
+
+std::uint32_t PlocBuilder::nodes_below_halved(std::uint32_t count, int levels) const {
+  if (levels == 0 || count <= leaf_size_) return 0;
+  return 2 + nodes_below_halved(count / 2, levels - 1) + nodes_below_halved(count - count / 2, levels - 1);
+}
+
+void PlocBuilder::write(RawBvh& bvh, std::uint32_t cluster, Slot slot, int levels, const BoxSource& source,
+                        Executor& executor, Meter& meter) const {
   const std::uint32_t count = count_of(cluster);
-  if (count <= kTaskSize || is_group(cluster) || pairs_[cluster].is_leaf) {
-    write_small(bvh, node_index, cluster, slot);
+  if (count <= kTaskSize || pairs_[cluster].kind != Pair::Kind::pair) {
+    write_small(bvh, cluster, slot, levels, source);
     return meter.advance(count);
   }
   meter.advance(0);
-  const std::uint32_t left = pairs_[cluster].left, right = pairs_[cluster].right;
-  bvh.nodes[node_index] = {pairs_[cluster].box, slot.base, 0};
-  const Slot to_left{slot.base + 2, slot.first_prim};
-  const Slot to_right{to_left.base + nodes_below(left), slot.first_prim + count_of(left)};
-  executor.both([&] { write_subtree(bvh, slot.base, left, to_left, executor, meter); },
-                [&] { write_subtree(bvh, slot.base + 1, right, to_right, executor, meter); });
+  const Pair& pair = pairs_[cluster];
+  bvh.nodes[slot.node_index] = {pair.box, slot.base, 0};
+  const Slot left{slot.base, slot.base + 2, slot.first_prim};
+  const Slot right{slot.base + 1, left.base + nodes_below(pair.left), slot.first_prim + count_of(pair.left)};
+  executor.both([&] { write(bvh, pair.left, left, levels - 1, source, executor, meter); },
+                [&] { write(bvh, pair.right, right, levels - 1, source, executor, meter); });
 }
 
-void PlocSplitter::write_small(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster,
-                               Slot slot) const {
+void PlocBuilder::write_small(RawBvh& bvh, std::uint32_t cluster, Slot slot, int levels,
+                              const BoxSource& source) const {
+  BvhNode& node = bvh.nodes[slot.node_index];
+  PrimId* const ids = &bvh.prim_ids[slot.first_prim];
   if (is_group(cluster)) {
     const Group& leaf = group(cluster);
-    bvh.nodes[node_index] = {leaf.reach().box(), slot.first_prim, size_of(leaf)};
-    std::copy_n(order_.ids.data() + first_of(leaf), size_of(leaf), &bvh.prim_ids[slot.first_prim]);
+    node = {leaf.reach().box(), slot.first_prim, size_of(leaf)};
+    std::copy_n(order_.ids.data() + first_of(leaf), size_of(leaf), ids);
     return;
   }
   const Pair& pair = pairs_[cluster];
-  if (pair.is_leaf) {
-    bvh.nodes[node_index] = {pair.box, slot.first_prim, pair.count};
-    write_members(cluster, &bvh.prim_ids[slot.first_prim]);
+  if (pair.kind != Pair::Kind::pair) {
+    write_members(cluster, ids);
+    if (pair.kind == Pair::Kind::halved)
+      write_halved(bvh, pair.count, slot, levels, source);
+    else
+      node = {pair.box, slot.first_prim, pair.count};
     return;
   }
-  bvh.nodes[node_index] = {pair.box, slot.base, 0};
-  write_small(bvh, slot.base, pair.left, {slot.base + 2, slot.first_prim});
-  write_small(bvh, slot.base + 1, pair.right,
-              {slot.base + 2 + nodes_below(pair.left), slot.first_prim + count_of(pair.left)});
+  node = {pair.box, slot.base, 0};
+  write_small(bvh, pair.left, {slot.base, slot.base + 2, slot.first_prim}, levels - 1, source);
+  write_small(bvh, pair.right,
+              {slot.base + 1, slot.base + 2 + nodes_below(pair.left), slot.first_prim + count_of(pair.left)},
+              levels - 1, source);
 }
 
-Step<PlocSplitter::Share> PlocSplitter::step(Range range, Plan plan, const Share& share) {
-  PrimId* const list = list_.data() + range.begin;
-  const std::uint32_t count = range.size();
-  if (!share.is_list) {
-    const bool has_parts = !is_group(share.cluster);
-    const Box3 box = has_parts ? pairs_[share.cluster].box : group(share.cluster).reach().box();
-    if (plan == Plan::leaf || !has_parts || (plan == Plan::choose && pairs_[share.cluster].is_leaf))
-      return {box, range.begin, share, share};
-    if (plan == Plan::choose) {
-      const Pair& pair = pairs_[share.cluster];
-      return {box, range.begin + count_of(pair.left), {pair.left}, {pair.right}};
-    }
-    write_members(share.cluster, list);
+Box3 PlocBuilder::write_halved(RawBvh& bvh, std::uint32_t count, Slot slot, int levels,
+                               const BoxSource& source) const {
+  BvhNode& node = bvh.nodes[slot.node_index];
+  if (levels == 0 || count <= leaf_size_) {
+    Box3 box;
+    if (source)
+      for (std::uint32_t i = 0; i < count; ++i) {
+        Box3 own;
+        const std::size_t prim = bvh.prim_ids[slot.first_prim + i].value;
+        source(prim, prim + 1, &own);
+        box.extend(own);
+      }
+    node = {box, slot.first_prim, count};
+    return box;
   }
-  const Share part{share.cluster, true};
-  const bool is_leaf = plan == Plan::leaf || (plan == Plan::choose && count <= leaf_size_);
-  return {box_of({list, count}), range.begin + (is_leaf ? 0 : count / 2), part, part};
-}
-
-Box3 PlocSplitter::box_of(std::span<const PrimId> ids) const {
-  Box3 box;
-  for (const PrimId id : ids) {
-    // Items lie in the order of their numbers, with gaps where boxes are empty.
-    const Item* item = items_.full.data() + id.value;
-    if (!items_.empty_boxes.empty())
-      item = std::lower_bound(items_.full.begin(), items_.full.end(), id,
-                              [](const Item& a, PrimId b) { return a.prim_id < b; });
-    box.extend(item->reach().box());
-  }
+  const std::uint32_t half = count / 2;
+  Box3 box = write_halved(bvh, half, {slot.base, slot.base + 2, slot.first_prim}, levels - 1, source);
+  box.extend(write_halved(
+      bvh, count - half,
+      {slot.base + 1, slot.base + 2 + nodes_below_halved(half, levels - 1), slot.first_prim + half},
+      levels - 1, source));
+  node = {box, slot.base, 0};
   return box;
 }
 
-PrimId* PlocSplitter::write_members(std::uint32_t cluster, PrimId* out) const {
+PrimId* PlocBuilder::write_members(std::uint32_t cluster, PrimId* out) const {
   if (is_group(cluster)) {
     const PrimId* first = order_.ids.data() + first_of(group(cluster));
     return std::copy(first, first + size_of(group(cluster)), out);
   }
   return write_members(pairs_[cluster].right, write_members(pairs_[cluster].left, out));
-}
-
-void PlocSplitter::write_leaf(Range range, const Share& share, std::span<PrimId> out) const {
-  if (share.is_list)
-    std::copy_n(list_.data() + range.begin, range.size(), out.data());
-  else
-    write_members(share.cluster, out.data());
 }
 
 }  // namespace boxwood

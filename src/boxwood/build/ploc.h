@@ -11,54 +11,47 @@
 #pragma once
 
 #include "boxwood/build/cost.h"
+#include "boxwood/build/meter.h"
 #include "boxwood/build/morton_order.h"
 #include "boxwood/build/nearest.h"
-#include "boxwood/build/top_down.h"
+#include "boxwood/build/options.h"
+#include "boxwood/build/raw_bvh.h"
 
 namespace boxwood {
 
-/// Makes all clusters, then writes them down as a tree. Cost: linear. Where they lie deeper than is allowed,
-/// the driver (top_down.h) does that, and halves ranges in the clusters' own order.
-class PlocSplitter {
+/// Makes all clusters, then writes them down as a tree. Cost: linear.
+class PlocBuilder {
  public:
-  struct Share {
-    std::uint32_t cluster;  ///< A pair, or behind all pairs a group of the order.
-    bool is_list = false;   ///< A part of a range that was halved: see list_.
-  };
-
   /// Throws Cancelled.
-  PlocSplitter(const Items& items, const BuildOptions& options, Executor& executor, Meter& meter);
+  PlocBuilder(const Items& items, const BuildOptions& options, Executor& executor, Meter& meter);
 
-  /// Levels below the root.
-  int height() const { return is_group(root_) ? 0 : pairs_[root_].height; }
-  /// The clusters as a tree, in depth-first order; each cluster knows how many nodes it takes. Precondition:
-  /// there is at least one item.
-  RawBvh tree(Executor& executor, Meter& meter) const;
-
-  Share root() const { return {root_}; }
-  Step<Share> step(Range range, Plan plan, const Share& share);
-  void write_leaf(Range range, const Share& share, std::span<PrimId> out) const;
+  /// The clusters as a tree, in depth-first order; `empty_boxes` have a subtree of their own. Where clusters
+  /// lie deeper than options.max_depth, ranges are halved in the clusters' own order; only then boxes are
+  /// asked for once more.
+  RawBvh tree(std::span<const PrimId> empty_boxes, const BoxSource& source, Executor& executor, Meter& meter);
 
  private:
   /// Two clusters that became one.
   struct Pair {
     Box3 box;
     std::uint32_t left, right;
-    std::uint32_t count;  ///< Primitives.
-    float cost;           ///< SAH, areas as in Scale; known where a leaf could hold them.
-    std::uint32_t nodes_below;
-    std::uint8_t height;  ///< Levels below; 255 also stands for more.
-    bool is_leaf;         ///< Few enough, and better tested all at once.
+    std::uint32_t count;        ///< Primitives.
+    float cost;                 ///< SAH, areas as in Scale; known where a leaf could hold them.
+    std::uint32_t nodes_below;  ///< In the tree.
+    std::uint8_t height;        ///< Levels below; 255 also stands for more.
+    enum class Kind : std::uint8_t { pair, leaf, halved } kind;
   };
-  /// Where a subtree is written: its descendants from node `base` on, its primitives from `first_prim` on.
+  /// Where a subtree is written: its root, its descendants from node `base` on, its primitives from
+  /// `first_prim` on.
   struct Slot {
-    std::uint32_t base, first_prim;
+    std::uint32_t node_index, base, first_prim;
   };
   class Row;
 
   void merge_all(Executor& executor, Meter& meter);
   void fill(Row& row, const std::uint32_t* clusters, std::uint32_t count) const;
   void merge_chunk(Row& row, std::uint32_t enough, std::uint32_t first_pair);
+
   bool is_group(std::uint32_t cluster) const { return cluster >= pairs_.size(); }
   const Group& group(std::uint32_t cluster) const { return order_.groups[cluster - pairs_.size()]; }
   std::uint32_t count_of(std::uint32_t cluster) const {
@@ -68,21 +61,27 @@ class PlocSplitter {
     return is_group(cluster) ? 0 : pairs_[cluster].nodes_below;
   }
   int height_of(std::uint32_t cluster) const { return is_group(cluster) ? 0 : pairs_[cluster].height; }
-  void write_subtree(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster, Slot slot,
-                     Executor& executor, Meter& meter) const;
-  void write_small(RawBvh& bvh, std::uint32_t node_index, std::uint32_t cluster, Slot slot) const;
-  Box3 box_of(std::span<const PrimId> ids) const;
+
+  /// Decides where ranges are halved so that no node lies more than `levels` below the cluster; counts nodes
+  /// anew.
+  void keep_within(std::uint32_t cluster, int levels);
+  std::uint32_t nodes_below_halved(std::uint32_t count, int levels) const;
+  /// Writes the subtree of a cluster, whose root has `levels` below it at most.
+  void write(RawBvh& bvh, std::uint32_t cluster, Slot slot, int levels, const BoxSource& source,
+             Executor& executor, Meter& meter) const;
+  void write_small(RawBvh& bvh, std::uint32_t cluster, Slot slot, int levels, const BoxSource& source) const;
+  /// Halves the primitives that stand at their places already. An empty source: none of them has a box.
+  Box3 write_halved(RawBvh& bvh, std::uint32_t count, Slot slot, int levels, const BoxSource& source) const;
   /// Writes the primitives below a cluster, from left to right; returns the place behind the last.
   PrimId* write_members(std::uint32_t cluster, PrimId* out) const;
 
-  const Items& items_;
   const std::uint32_t leaf_size_;
+  const int max_depth_;
   const SahCost cost_;
   const Scale scale_;
   MortonOrder order_;
   RawArray<Pair> pairs_;
   std::uint32_t root_ = 0;
-  RawArray<PrimId> list_;  ///< By position in the tree; written where a range is halved.
 };
 
 }  // namespace boxwood

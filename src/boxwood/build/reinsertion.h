@@ -12,8 +12,8 @@
 #pragma once
 
 #include "boxwood/build/meter.h"
-#include "boxwood/core/parallel.h"
 #include "boxwood/build/raw_bvh.h"
+#include "boxwood/core/parallel.h"
 
 namespace boxwood {
 

@@ -26,7 +26,8 @@ constexpr std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-/// Asks the system to back whole huge pages of [begin, begin + bytes) by such; what it answers does not matter.
+/// Asks the system to back whole huge pages of [begin, begin + bytes) by such; what it answers does not
+/// matter.
 void advise_huge_pages([[maybe_unused]] char* begin, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   const auto first = round_up(reinterpret_cast<std::uintptr_t>(begin), kHugePage);

@@ -38,7 +38,6 @@ class MemoryBlock {
   std::size_t size() const { return size_; }
 
  private:
-
   char* data_ = nullptr;
   std::size_t size_ = 0, alignment_ = 0;
   std::shared_ptr<Room> room_;  ///< Null when it came from the system directly.

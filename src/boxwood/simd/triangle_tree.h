@@ -1,12 +1,12 @@
 // triangle_tree.h: what do the kernels walk?
 //
-// A wide tree (tree/wide.h) and its triangles, in one pool of memory: first the nodes, then the blocks. A large pool
-// is aligned to a huge page and backed by such, because a walk jumps about and would miss the TLB at every step. A
-// reference counts in units of 32 bytes, so the address of what it names is two shifts away, and a reference
-// to a node is half of its offset. There are two layouts. In full, a block holds four triangles coordinate by
-// coordinate, so that one vector is the same coordinate of all four. The compact one takes half the memory:
-// nodes are quantized (tree/quantized.h), and a block says where its vertices are, in the meshes that a scene
-// keeps anyway.
+// A wide tree (tree/wide.h) and its triangles, in one pool of memory: first the nodes, then the blocks. A
+// large pool is aligned to a huge page and backed by such, because a walk jumps about and would miss the TLB
+// at every step. A reference counts in units of 32 bytes, so the address of what it names is two shifts away,
+// and a reference to a node is half of its offset. There are two layouts. In full, a block holds four
+// triangles coordinate by coordinate, so that one vector is the same coordinate of all four. The compact one
+// takes half the memory: nodes are quantized (tree/quantized.h), and a block says where its vertices are, in
+// the meshes that a scene keeps anyway.
 #pragma once
 
 #include <functional>
