@@ -44,6 +44,8 @@ struct OpenBlock {
   RayInFlight* ray;
   const char* block;
   Crossed crossed;
+  std::uint32_t lanes;
+  alignas(16) float ts[kBlockWidth];
 };
 
 template <class Layout, bool kAny, class Output>
@@ -155,23 +157,26 @@ class Interleaved {
       const auto ref = static_cast<std::uint32_t>(*ray->top);
       const char* block = blocks_at(pool_, ref);
       for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
-        *open = {ray, block, test_edges(Layout::block(block), ray->ray)};
+        open->ray = ray;
+        open->block = block;
+        open->crossed = test_edges(Layout::block(block), ray->ray);
         open += open->crossed.maybe != 0;
       }
     }
 
     // The planes of what is left.
+    for (OpenBlock* o = open_; o != open; ++o)
+      o->lanes = test_planes(Layout::block(o->block), o->ray->ray, o->crossed, o->ray->hit.t, o->ts);
+
+    // Only then what follows from it, which is hard to foresee.
     for (OpenBlock* o = open_; o != open; ++o) {
+      if (o->lanes == 0) continue;
       RayInFlight& ray = *o->ray;
-      HWY_ALIGN float ts[kBlockWidth];
-      const TriangleBlock& block = Layout::block(o->block);
-      const std::uint32_t lanes = test_planes(block, ray.ray, o->crossed, ray.hit.t, ts);
       if constexpr (kAny) {
-        if (lanes == 0) continue;
         ray.hit.block = 0;
         ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
       } else {
-        if (lanes && take_closest(block, units(pool_, o->block), lanes, ts, ray.hit)) cull(ray);
+        if (take_closest(Layout::block(o->block), units(pool_, o->block), o->lanes, o->ts, ray.hit)) cull(ray);
       }
     }
   }
