@@ -39,7 +39,7 @@ struct alignas(64) RayInFlight {
   std::int32_t keys[kShortStack];
 };
 
-/// A block whose planes are still to be tested.
+/// A block whose planes are still to be tested, and then what the test says.
 struct OpenBlock {
   RayInFlight* ray;
   const char* block;
@@ -176,7 +176,8 @@ class Interleaved {
         ray.hit.block = 0;
         ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
       } else {
-        if (take_closest(Layout::block(o->block), units(pool_, o->block), o->lanes, o->ts, ray.hit)) cull(ray);
+        if (take_closest(Layout::block(o->block), units(pool_, o->block), o->lanes, o->ts, ray.hit))
+          cull(ray);
       }
     }
   }
