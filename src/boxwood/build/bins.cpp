@@ -7,7 +7,7 @@
 namespace boxwood {
 
 #define BOXWOOD_LOOPS "boxwood/build/bins-inl.h"
-#include "boxwood/build/every_cpu-inl.h"
+#include "boxwood/core/every_cpu-inl.h"
 
 Histogram::Histogram(int bin_count) : bins(bin_count) {
   const Slab empty{Lanes::all(-kInfinity), Lanes::all(-kInfinity)};

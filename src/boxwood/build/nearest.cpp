@@ -34,7 +34,7 @@ constexpr std::array<LowBits, 16> kLowBits = make_low_bits();
 }  // namespace
 
 #define BOXWOOD_LOOPS "boxwood/build/nearest-inl.h"
-#include "boxwood/build/every_cpu-inl.h"
+#include "boxwood/core/every_cpu-inl.h"
 
 void find_nearest(const BoxRow& row, const Scale& scale, std::uint16_t* partner) {
   (has_avx2() ? avx2::find_nearest : everywhere::find_nearest)(row, scale.factor(), partner);

@@ -204,6 +204,22 @@ EmitterPoint EmitterGroup::sample(std::size_t index, Vec3 receiver, Vec2 u) cons
   return point;
 }
 
+std::optional<FlatLight> EmitterGroup::flat_light(std::size_t index) const {
+  const Emitter& emitter = emitters_[index];
+  const bool is_triangle = emitter.kind == Emitter::Kind::triangle;
+  if ((!is_triangle && emitter.kind != Emitter::Kind::parallelogram) || emitter.texture.is_valid())
+    return std::nullopt;
+  return FlatLight{emitter.a,
+                   emitter.x,
+                   emitter.y,
+                   emitter.normal,
+                   emitter.radiance,
+                   1 / emitter.area,
+                   emitter.clearance,
+                   is_triangle ? 1.0f : 0.0f,
+                   emitter.emits_from_both_sides ? 1.0f : 0.0f};
+}
+
 /// World area over object area, for a piece of surface with this normal: |det M| |M^-T n|.
 float EmitterGroup::area_scale(Vec3 object_normal) const {
   return volume_scale_ * length(transform_normal(object_from_world_, object_normal));

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "boxwood/render/flat_light.h"
 #include "boxwood/render/light_tree.h"
 #include "boxwood/scene/surface.h"
 
@@ -41,6 +42,9 @@ class EmitterGroup {
 
   /// A point of an emitter, seen from `receiver`.
   EmitterPoint sample(std::size_t emitter, Vec3 receiver, Vec2 u) const;
+
+  /// The emitter, if it is flat and has one color (flat_light.h).
+  std::optional<FlatLight> flat_light(std::size_t emitter) const;
 
   /// The emitter that a `part` of a primitive is; nothing when it is none.
   std::optional<std::uint32_t> find(PrimId primitive_id, std::uint32_t part) const;

@@ -1,6 +1,7 @@
 #include "boxwood/render/light.h"
 
 #include <algorithm>
+#include <array>
 
 #include "boxwood/render/material.h"
 #include "boxwood/render/warp.h"
@@ -24,6 +25,10 @@ Ray ray_to_point(const Surface& surface, Vec3 direction, Vec3 point) {
   ray.direction = point - ray.origin;
   ray.t_max = 1;
   return ray;
+}
+
+float kept_in_unit(float x) {
+  return min(max(x, 0.0f), 0x1.fffffep-1f);
 }
 
 }  // namespace
@@ -85,6 +90,12 @@ Lights::Lights(const Scene& scene, const Camera& camera) : scene_(scene) {
                                  std::acos(min(max(spot.inner_cosine, -1.0f), 1.0f)) + 1e-3f);
     add_near({Near::Kind::spot, 0, i}, bounds);
   }
+  for (const Near& light : near_lights_) {
+    const bool is_emitter = light.kind == Near::Kind::emitter;
+    const auto flat = is_emitter ? groups_[light.group].flat_light(light.index) : std::nullopt;
+    flat_lights_.push_back(flat.value_or(FlatLight{}));
+    is_flat_.push_back(flat.has_value());
+  }
   tree_ = LightTree(near_bounds_);
   near_bounds_ = {};
 }
@@ -112,9 +123,24 @@ float Lights::importance(const Far& light, const Receiver& from) const {
 }
 
 float Lights::sum_of_importances(const Receiver& from) const {
-  float sum = tree_.importance(from);
+  return sum_with_far(tree_.importance(from), from);
+}
+
+/// `sum`, and the importances of the lights from far away.
+float Lights::sum_with_far(float sum, const Receiver& from) const {
   for (const Far& light : far_lights_) sum += importance(light, from);
   return sum;
+}
+
+/// The light from far away that `number` falls to, below the sum of all weights; null for the tree. What is
+/// left of the number chooses again; `weight` is that of the light.
+const Lights::Far* Lights::choose_far(const Receiver& from, float& number, float& weight) const {
+  for (const Far& light : far_lights_) {
+    weight = importance(light, from);
+    if (number < weight) return &light;
+    number -= weight;
+  }
+  return nullptr;
 }
 
 std::optional<LightSample> Lights::sample(const Surface& surface, Vec3 facing_normal, float choice,
@@ -128,18 +154,57 @@ std::optional<LightSample> Lights::sample(const Surface& surface, Vec3 facing_no
   if (!(sum > 0) || !(sum < kInfinity)) return std::nullopt;
 
   // One of the lights from far away, or the tree. What is left of the choice chooses again.
-  float left = choice * sum;
-  for (const Far& light : far_lights_) {
-    const float weight = importance(light, from);
-    if (left < weight) return sample_far(light, surface, weight / sum, u);
-    left -= weight;
-  }
-  const float weight = tree_.importance(from);
+  float left = choice * sum, weight = 0;
+  if (const Far* light = choose_far(from, left, weight)) return sample_far(*light, surface, weight / sum, u);
+  weight = tree_.importance(from);
   if (!(weight > 0)) return std::nullopt;
-  float rest = min(max(left / weight, 0.0f), 0x1.fffffep-1f);
+  float rest = kept_in_unit(left / weight);
   const std::optional<LightTree::Choice> chosen = tree_.choose(from, rest);
   if (!chosen) return std::nullopt;
   return sample_near(near_lights_[chosen->light], surface, chosen->probability * weight / sum, u);
+}
+
+void Lights::sample(std::span<const Surface> surfaces, const Receivers& from, const Leaving& leaving,
+                    Floats& choices, const Vec2s& u, LightSamples& out) const {
+  const int count = static_cast<int>(surfaces.size());
+  BlockWeights root;
+  if (!tree_.is_empty()) tree_.weigh_root(from, root);
+
+  // One of the lights from far away, or the tree.
+  std::array<const Far*, kBlock> far{};
+  Floats far_probability{}, tree_weight{}, sums{};
+  for (int i = 0; i < count && !far_lights_.empty(); ++i) {
+    const Receiver at{from.position[i], from.normal[i]};
+    const float sum = sums[i] = sum_with_far(root.sum[i], at);
+    if (!(sum > 0) || !(sum < kInfinity)) continue;
+    float left = choices[i] * sum, weight = 0;
+    far[i] = choose_far(at, left, weight);
+    far_probability[i] = weight / sum;
+    tree_weight[i] = root.sum[i];
+    choices[i] = kept_in_unit(left / root.sum[i]);
+  }
+
+  // A light of the tree, and a point of it; most are flat.
+  Integers lights{};
+  Floats probabilities{};
+  if (!tree_.is_empty()) {
+    tree_.choose(from, count, root, choices, lights, probabilities);
+    for (int i = 0; i < count && !far_lights_.empty(); ++i)
+      probabilities[i] = sums[i] < kInfinity ? probabilities[i] * tree_weight[i] / sums[i] : 0;
+    sample_flat_lights(flat_lights_, lights, probabilities, leaving, u, out);
+  }
+
+  // The others, one by one.
+  for (int i = 0; i < count; ++i) {
+    const bool is_near = far[i] == nullptr && probabilities[i] > 0;
+    if (is_near && is_flat_[lights[i]]) continue;
+    out.pdf[i] = 0;
+    if (far[i] == nullptr && !is_near) continue;
+    const std::optional<LightSample> found =
+        is_near ? sample_near(near_lights_[lights[i]], surfaces[i], probabilities[i], u[i])
+                : sample_far(*far[i], surfaces[i], far_probability[i], u[i]);
+    if (found) out.set(i, *found);
+  }
 }
 
 std::optional<LightSample> Lights::sample_far(const Far& light, const Surface& surface, float probability,

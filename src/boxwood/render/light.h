@@ -12,24 +12,16 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "boxwood/render/emitter.h"
 #include "boxwood/render/environment.h"
+#include "boxwood/render/light_sample.h"
 #include "boxwood/render/sky.h"
 #include "boxwood/scene/surface.h"
 
 namespace boxwood::render {
-
-/// One try to reach a light.
-struct LightSample {
-  Vec3 direction;  ///< Towards the light; unit length.
-  Vec3 radiance;   ///< From there, if nothing is in the way; for lights without a surface: what replaces it.
-  /// Per solid angle, with the choice of the light; for lights without a surface: of the choice.
-  float pdf = 0;
-  bool is_perfect = false;  ///< No other way finds this light.
-  Ray shadow_ray;           ///< Hits nothing when the light is in sight.
-};
 
 /// Whether a scene has any light of its own.
 bool has_light(const SceneDesc& desc);
@@ -42,6 +34,11 @@ class Lights {
   /// Tries one light from `surface`, which is lit on the side of `facing_normal`, or on both when that is
   /// zero. Nothing when no light could reach it, or the point tried faces away.
   std::optional<LightSample> sample(const Surface& surface, Vec3 facing_normal, float choice, Vec2 u) const;
+
+  /// The same for each of `surfaces`, at most a block of them, with the same answers. `from` has their
+  /// positions and facing normals, `leaving` their positions, normals and clearances.
+  void sample(std::span<const Surface> surfaces, const Receivers& from, const Leaving& leaving,
+              Floats& choices, const Vec2s& u, LightSamples& out) const;
 
   /// The radiance of the dome along a ray that hits nothing.
   Vec3 dome(Vec3 direction) const { return sky_ ? sky_radiance(*sky_, direction) : Vec3{}; }
@@ -86,6 +83,8 @@ class Lights {
   FarLight far_light(std::size_t index, Vec3 direction, const Receiver& from) const;
   float importance(const Far& light, const Receiver& from) const;
   float sum_of_importances(const Receiver& from) const;
+  float sum_with_far(float sum, const Receiver& from) const;
+  const Far* choose_far(const Receiver& from, float& left, float& weight) const;
   std::optional<LightSample> sample_far(const Far& light, const Surface& surface, float probability,
                                         Vec2 u) const;
   std::optional<LightSample> sample_near(const Near& light, const Surface& surface, float probability,
@@ -97,6 +96,8 @@ class Lights {
   std::vector<Far> far_lights_;
   std::vector<EnvironmentLight> environments_;
   std::vector<Near> near_lights_;
+  std::vector<FlatLight> flat_lights_;    // one for each of near_lights_,
+  std::vector<char> is_flat_;             // if it is one
   std::vector<LightBounds> near_bounds_;  // only while the tree is built
   LightTree tree_;
   std::vector<EmitterGroup> groups_;

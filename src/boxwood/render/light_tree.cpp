@@ -12,9 +12,6 @@ namespace {
 float clamp_cosine(float c) {
   return min(max(c, -1.0f), 1.0f);
 }
-float sine_of(float cosine) {
-  return std::sqrt(max(0.0f, 1 - cosine * cosine));
-}
 
 /// Bounds of both: the box around both, and a cone around both cones.
 LightBounds join(const LightBounds& a, const LightBounds& b) {
@@ -94,60 +91,6 @@ struct LightTree::BinaryNode {
   std::uint32_t light = 0;   // leaf
 };
 
-void LightTree::Node::set(int lane, const LightBounds& b) {
-  const Vec3 center = b.box.center();
-  x[lane] = center.x;
-  y[lane] = center.y;
-  z[lane] = center.z;
-  radius[lane] = 0.5f * length(b.box.extent());
-  axis_x[lane] = b.axis.x;
-  axis_y[lane] = b.axis.y;
-  axis_z[lane] = b.axis.z;
-  cos_facing[lane] = b.cos_facing;
-  sin_facing[lane] = sine_of(b.cos_facing);
-  // A bound of the angle is exact at 90 degrees only: narrower lights that take up room count up to there.
-  cos_spread[lane] = radius[lane] > 0 ? min(b.cos_spread, 0.0f) : b.cos_spread;
-  strength[lane] = b.strength;
-  turned[lane] = b.is_two_sided ? -1.0f : 1.0f;
-  least_falloff[lane] = b.cos_facing > -1 ? 0.05f : 1.0f;
-}
-
-/// The estimate of the irradiance is strength / distance^2, by the cosines at the light and at the surface.
-/// Seen from the surface the lights are within an angle r of the middle of their sphere, so an angle t may be
-/// t - r in truth. For its cosine stands cos t + sin r: above 0 exactly where cos(t - r) is, and no less
-/// where that is below 0.
-float LightTree::Node::weigh(const Receiver& from, Lanes& weights) const {
-  const Vec3 p = from.position, n = from.normal;
-  const float least_cos_in = length_squared(n) > 0 ? 0.0f : 1.0f;
-  // Selects in place of branches, so that the compiler works on several lanes at once.
-  Lanes out;
-  for (int i = 0; i < kWidth; ++i) {
-    const float to_x = x[i] - p.x, to_y = y[i] - p.y, to_z = z[i] - p.z;
-    const float distance_squared = max(to_x * to_x + to_y * to_y + to_z * to_z, 1e-30f);
-    const float per_distance = 1 / std::sqrt(distance_squared);
-    // Inside the sphere the distance to its middle says nothing, and neither do directions.
-    const float sin_reach = radius[i] * per_distance;
-    const float reach = sin_reach < 1 ? sin_reach : 2.0f;
-
-    // From where the lights face towards the surface, less their cone.
-    const float along = -(axis_x[i] * to_x + axis_y[i] * to_y + axis_z[i] * to_z) * per_distance;
-    const float cos_axis = max(min(max(along, turned[i] * along), 1.0f), -1.0f);
-    const float outside_cone = cos_axis * cos_facing[i] + std::sqrt(1 - cos_axis * cos_axis) * sin_facing[i];
-    const float cos_away = cos_axis > cos_facing[i] ? 1.0f : outside_cone;
-    const float cos_emitted = min(cos_away + reach, 1.0f);
-
-    const float cos_normal = (n.x * to_x + n.y * to_y + n.z * to_z) * per_distance;
-    const float cos_in = max(min(cos_normal + reach, 1.0f), least_cos_in);
-
-    const float irradiance = strength[i] / max(distance_squared, radius[i] * radius[i]);
-    const float weight = irradiance * (max(cos_emitted, least_falloff[i]) * cos_in);
-    out[i] = cos_emitted > cos_spread[i] ? weight : 0.0f;
-  }
-  weights = out;
-  const auto pair = [&out](int i) { return out[i] + out[i + kWidth / 2]; };
-  return (pair(0) + pair(2)) + (pair(1) + pair(3));
-}
-
 LightTree::LightTree(const std::vector<LightBounds>& lights)
     : leaf_of_light_(lights.size(), Leaf{kNoNode, 0}) {
   std::vector<std::uint32_t> order(lights.size());
@@ -162,9 +105,9 @@ LightTree::LightTree(const std::vector<LightBounds>& lights)
 
 /// Makes a node of the lights below `index`: opens the child that costs most until all lanes are taken.
 std::uint32_t LightTree::widen(const std::vector<BinaryNode>& nodes, std::uint32_t index) {
-  std::array<std::uint32_t, kWidth> children{index};
+  std::array<std::uint32_t, Node::kWidth> children{index};
   int count = 1;
-  while (count < kWidth) {
+  while (count < Node::kWidth) {
     int dearest = -1;
     double highest = -1;
     for (int i = 0; i < count; ++i) {
@@ -261,8 +204,13 @@ float LightTree::importance(const Receiver& from) const {
 
 std::optional<LightTree::Choice> LightTree::choose(const Receiver& from, float& choice) const {
   if (is_empty()) return std::nullopt;
-  float probability = 1;
-  for (std::uint32_t index = 0;;) {
+  return choose_below(0, 1, from, choice);
+}
+
+/// Goes on from a node, to which a point came with a probability.
+std::optional<LightTree::Choice> LightTree::choose_below(std::uint32_t index, float probability,
+                                                         const Receiver& from, float& choice) const {
+  for (;;) {
     const Node& node = nodes_[index];
     Lanes weights;
     const float sum = node.weigh(from, weights);
@@ -272,6 +220,22 @@ std::optional<LightTree::Choice> LightTree::choose(const Receiver& from, float& 
     probability *= weights[lane] / sum;
     index = node.child[lane];
     if ((node.is_node >> lane & 1) == 0) return Choice{index, probability};
+  }
+}
+
+void LightTree::choose(const Receivers& from, int count, const BlockWeights& root, Floats& choices,
+                       Integers& lights, Floats& probabilities) const {
+  Integers lanes;
+  pick(root, choices, lanes, probabilities);
+  const Node& node = nodes_[0];
+  for (int i = 0; i < count; ++i) {
+    lights[i] = probabilities[i] > 0 ? node.child[lanes[i]] : 0;
+    if ((node.is_node >> lanes[i] & 1) == 0 || !(probabilities[i] > 0)) continue;
+    // Below the root each goes its own way.
+    const std::optional<Choice> found =
+        choose_below(lights[i], probabilities[i], {from.position[i], from.normal[i]}, choices[i]);
+    lights[i] = found ? found->light : 0;
+    probabilities[i] = found ? found->probability : 0;
   }
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "boxwood/render/bsdf.h"
+#include "boxwood/render/draws.h"
 #include "boxwood/render/light.h"
 #include "boxwood/render/material.h"
 #include "boxwood/render/shadow.h"
@@ -63,6 +65,24 @@ struct Pending {
   Vec3 light;
 };
 
+/// The hits of a block on their way through a step: where light may come from, and go on to.
+struct Step {
+  Step() { bsdfs.reserve(kBlock); }
+
+  int count = 0;
+  std::array<std::uint32_t, kBlock> paths;  // positions among the paths on their way
+  std::array<Surface, kBlock> surfaces;
+  std::array<Look, kBlock> looks;
+  std::array<const Material*, kBlock> materials;
+  std::vector<Bsdf> bsdfs;
+  Receivers places;
+  Leaving leaving;
+  Draws draws;
+  Floats light_choices{};
+  Vec2s light_points;
+  LightSamples lights;
+};
+
 class PathTracer final : public Integrator {
  public:
   PathTracer(const Scene& scene, const Camera& camera, float pixel_angle)
@@ -115,7 +135,8 @@ class PathTracer final : public Integrator {
         if (k + 2 * kAhead < paths.size()) prefetch_triangle(scene_, batch.hits[batch.order[k + 2 * kAhead]]);
         if (k + kAhead < paths.size()) prefetch_corners(scene_, batch.hits[batch.order[k + kAhead]]);
         const std::uint32_t i = batch.order[k];
-        batch.goes_on[i] = advance(paths[i], batch.hits[i], i, batch);
+        batch.goes_on[i] = arrive(paths[i], batch.hits[i], i, batch.step);
+        if (batch.step.count == kBlock || k + 1 == paths.size()) leave(paths, batch);
       }
 
       // Find how much of the lights that they asked for is in sight.
@@ -150,6 +171,7 @@ class PathTracer final : public Integrator {
     std::vector<Pending> pending;    // one for each of `rays` towards lights,
     std::vector<Shadows::Way> ways;  // and what it starts in
     std::vector<Vec3> transmittances;
+    Step step;
   };
 
   /// Puts the first `count` hits in an order in which equal materials follow each other: the processor then
@@ -164,9 +186,9 @@ class PathTracer final : public Integrator {
 
   std::size_t group_of(const Hit& hit) const { return hit ? group_of_instance_[hit.instance_id.value] : 0; }
 
-  /// Takes a path from its ray's hit to its next ray. Adds a ray towards a light to the batch. False at the
-  /// path's end.
-  bool advance(Path& path, const Hit& hit, std::uint32_t position, Batch& batch) const {
+  /// Takes a path to what its ray hit. True where it goes straight on from there; otherwise it has come to its
+  /// end, unless it now is part of the step.
+  bool arrive(Path& path, const Hit& hit, std::uint32_t position, Step& step) const {
     if (max_component(path.absorption) > 0)
       path.throughput *= beer(path.absorption, hit ? hit.t * length(path.ray.direction) : kInfinity);
     if (!hit) {
@@ -174,7 +196,9 @@ class PathTracer final : public Integrator {
       return false;
     }
     const SceneDesc& desc = scene_.description();
-    const Surface surface = surface_at(scene_, path.ray, hit);
+    const int point = step.count;
+    Surface& surface = step.surfaces[point];
+    surface = surface_at(scene_, path.ray, hit);
     path.cone_width += path.cone_angle * hit.t;
 
     MaterialId id = surface.material;
@@ -197,30 +221,64 @@ class PathTracer final : public Integrator {
       }
     }
 
-    // Light that one light source sends here, if nothing is in the way.
+    // What scatters light there.
     const float uv_width = prepared->has_color_texture ? path.cone_width * uv_density(scene_, hit) : 0.0f;
-    const Look look = look_at(desc, material, *prepared, surface.uv, uv_width);
+    step.looks[point] = look_at(desc, material, *prepared, surface.uv, uv_width);
     const Vec3 normal =
         prepared->has_normal_texture ? mapped_normal(scene_, hit, surface, material) : surface.shading_normal;
-    const Bsdf bsdf(look, surface, normal, -path.ray.direction);
-    const Receiver place{surface.position, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal()};
-    const Vec2 choices = path.sampler.next_2d();  // of a light, and of a lobe
-    if (bsdf.has_spread()) ask_for_light(path, surface, bsdf, place, position, choices.x, batch);
+    const Bsdf& bsdf = step.bsdfs.emplace_back(step.looks[point], surface, normal, -path.ray.direction);
+    step.paths[point] = position;
+    step.materials[point] = &material;
+    step.places.position.set(point, surface.position);
+    step.places.normal.set(point, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
+    step.leaving.position.set(point, surface.position);
+    step.leaving.normal.set(point, surface.normal);
+    step.leaving.clearance[point] = surface.clearance();
+    step.draws.set(point, path.sampler);
+    ++step.count;
+    return false;
+  }
 
-    // Go on in a direction that the surface chooses.
-    const std::optional<BsdfSample> next = bsdf.sample(choices.y, path.sampler.next_2d());
+  /// Lets all paths of the step ask for light and go on. Leaves it empty.
+  void leave(std::vector<Path>& paths, Batch& batch) const {
+    Step& step = batch.step;
+    const int count = std::exchange(step.count, 0);
+    step.draws.draw();
+    for (int i = 0; i < count; ++i) {
+      step.light_choices[i] = step.draws.pair(i, 0).x;
+      step.light_points.set(i, step.draws.pair(i, 1));
+    }
+    lights_.sample(std::span(step.surfaces).first(static_cast<std::size_t>(count)), step.places, step.leaving,
+                   step.light_choices, step.light_points, step.lights);
+    for (int i = 0; i < count; ++i) {
+      Path& path = paths[step.paths[i]];
+      if (step.bsdfs[i].has_spread() && step.lights.pdf[i] > 0) ask_for_light(path, step, i, batch);
+      batch.goes_on[step.paths[i]] = go_on(path, step, i);
+    }
+    step.bsdfs.clear();
+  }
+
+  /// Goes on in a direction that the surface chooses. False at the path's end.
+  static bool go_on(Path& path, const Step& step, int i) {
+    const Surface& surface = step.surfaces[i];
+    const Bsdf& bsdf = step.bsdfs[i];
+    // The first draw chose a light and chooses a lobe; a second went to a point of the light.
+    int drawn = bsdf.has_spread() ? 2 : 1;
+    const std::optional<BsdfSample> next =
+        bsdf.sample(step.draws.pair(i, 0).y, step.draws.pair(i, drawn++));
     if (!next) return false;
     path.throughput *= next->weight;
 
     // Russian roulette: end paths that carry little, and let the others stand for them.
     if (path.bounce >= kRouletteAfter) {
       const float survival = min(max_component(path.throughput), kMaxSurvival);
-      if (!(path.sampler.next_1d() < survival)) return false;
+      if (!(step.draws.pair(i, drawn++).x < survival)) return false;
       path.throughput *= 1 / survival;
     }
+    path.sampler.skip(static_cast<std::uint32_t>(drawn));
     if (!(max_component(path.throughput) > 0)) return false;
-    if (next->is_transmission) enter(path, material, surface, next->direction);
-    path.last = {place, next->pdf, next->is_perfect};
+    if (next->is_transmission) enter(path, *step.materials[i], surface, next->direction);
+    path.last = {{step.places.position[i], step.places.normal[i]}, next->pdf, next->is_perfect};
     if (!next->is_perfect) path.cone_angle = max(path.cone_angle, kScatteredAngle);
     path.ray = surface.spawn(next->direction);
     ++path.bounce;
@@ -251,16 +309,15 @@ class PathTracer final : public Integrator {
     return sum;
   }
 
-  void ask_for_light(Path& path, const Surface& surface, const Bsdf& bsdf, const Receiver& place,
-                     std::uint32_t position, float choice, Batch& batch) const {
-    const auto light = lights_.sample(surface, place.normal, choice, path.sampler.next_2d());
-    if (!light) return;
-    const BsdfValue toward = bsdf.evaluate(light->direction);
+  /// Asks how much of the light that was tried is in sight.
+  static void ask_for_light(const Path& path, const Step& step, int i, Batch& batch) {
+    const LightSamples& lights = step.lights;
+    const BsdfValue toward = step.bsdfs[i].evaluate(lights.direction[i]);
     if (!(max_component(toward.value) > 0)) return;
-    const float weight = light->is_perfect ? 1 : power_heuristic(light->pdf, toward.pdf);
-    batch.ways.push_back({light->shadow_ray, path.absorption});
-    batch.pending.push_back(
-        {position, path.throughput * toward.value * light->radiance * (weight / light->pdf)});
+    const float weight = lights.is_perfect[i] != 0 ? 1 : power_heuristic(lights.pdf[i], toward.pdf);
+    batch.ways.push_back({lights.shadow_ray(i), path.absorption});
+    batch.pending.push_back({step.paths[i], path.throughput * toward.value * lights.radiance[i] *
+                                                (weight / lights.pdf[i])});
   }
 
   const PreparedMaterial& prepared(MaterialId id) const {

@@ -9,7 +9,6 @@
 // in each pair of dimensions, hit each of the 2^k elementary boxes once.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "boxwood/core/vec.h"
@@ -47,26 +46,33 @@ constexpr std::uint32_t owen_scramble_reversed(std::uint32_t reversed, std::uint
   return reversed;
 }
 
-/// Both halves at once; the halves also change places.
-constexpr std::uint64_t reverse_bits(std::uint64_t x) {
-  x = (x << 32) | (x >> 32);
-  x = ((x & 0x0000ffff0000ffffu) << 16) | ((x >> 16) & 0x0000ffff0000ffffu);
-  x = ((x & 0x00ff00ff00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ff00ff00ffu);
-  x = ((x & 0x0f0f0f0f0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0f0f0f0f0fu);
-  x = ((x & 0x3333333333333333u) << 2) | ((x >> 2) & 0x3333333333333333u);
-  return ((x & 0x5555555555555555u) << 1) | ((x >> 1) & 0x5555555555555555u);
+/// The second coordinate of the Sobol sequence, its bits reversed. The direction numbers of that coordinate
+/// are the rows of Pascal's triangle modulo 2, so the bits of the index, as a polynomial p(x) over them, become
+/// those of p(x + 1); and as (x + 1)^n = x^n + 1 for powers of two, the upper half of each group of bits is
+/// added to the lower half, for halves of 16, 8, 4, 2 and 1 bits.
+constexpr std::uint32_t second_sobol_reversed(std::uint32_t index) {
+  index ^= index >> 16;
+  index ^= (index & 0xff00ff00u) >> 8;
+  index ^= (index & 0xf0f0f0f0u) >> 4;
+  index ^= (index & 0xccccccccu) >> 2;
+  return index ^ ((index & 0xaaaaaaaau) >> 1);
 }
 
-/// What each value of each byte of an index, its bits reversed, adds to the second coordinate, its bits
-/// reversed too. The direction numbers of that coordinate are the rows of Pascal's triangle modulo 2.
-inline constexpr auto kSecondSobol = [] {
-  std::array<std::array<std::uint32_t, 256>, 4> table{};
-  std::uint32_t direction = 0x80000000u;
-  for (unsigned bit = 31; bit < 32; --bit, direction ^= direction >> 1)
-    for (unsigned value = 0; value < 256; ++value)
-      if (value >> (bit % 8) & 1u) table[bit / 8][value] ^= reverse_bits(direction);
-  return table;
-}();
+/// Two numbers in [0, 1).
+inline Vec2 draw(std::uint32_t pixel_seed, std::uint32_t reversed_index, std::uint32_t dimension) {
+  const std::uint32_t seed = hash_bits(pixel_seed, dimension);
+  // Shuffle: which point of the sequence this sample takes.
+  const std::uint32_t index = reverse_bits(owen_scramble_reversed(reversed_index, seed));
+  // Its first coordinate is the index with its bits reversed, so the reversed coordinate is the index itself.
+  const std::uint32_t x = reverse_bits(owen_scramble_reversed(index, hash_bits(seed, 1)));
+  const std::uint32_t y =
+      reverse_bits(owen_scramble_reversed(second_sobol_reversed(index), hash_bits(seed, 2)));
+  // Of the bits that a float can hold; signed, since that is what processors convert.
+  const auto to_unit = [](std::uint32_t bits) {
+    return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
+  };
+  return {to_unit(x), to_unit(y)};
+}
 
 /// The numbers of one sample of one pixel, drawn in a fixed order.
 class Sampler {
@@ -78,27 +84,13 @@ class Sampler {
   float next_1d() { return next_2d().x; }
 
   /// Both in [0, 1).
-  Vec2 next_2d() {
-    const std::uint32_t seed = hash_bits(pixel_seed_, dimension_++);
-    // Shuffle: which point of the sequence this sample takes.
-    const std::uint32_t reversed = owen_scramble_reversed(reversed_index_, seed);
-    // Its first coordinate is the index with its bits reversed,
-    // so the reversed coordinate is the index itself.
-    const std::uint32_t x = owen_scramble_reversed(reverse_bits(reversed), hash_bits(seed, 1));
-    const std::uint32_t y = owen_scramble_reversed(second_sobol(reversed), hash_bits(seed, 2));
-    const std::uint64_t both = reverse_bits(std::uint64_t{y} << 32 | x);
-    return {to_unit(static_cast<std::uint32_t>(both >> 32)), to_unit(static_cast<std::uint32_t>(both))};
-  }
+  Vec2 next_2d() { return draw(pixel_seed_, reversed_index_, dimension_++); }
+
+  /// Leaves out `count` draws.
+  void skip(std::uint32_t count) { dimension_ += count; }
 
  private:
-  /// The second coordinate of the Sobol sequence; both are reversed.
-  /// It is linear over bits, so each byte adds (xor) its own share.
-  static constexpr std::uint32_t second_sobol(std::uint32_t reversed) {
-    return kSecondSobol[0][reversed & 255] ^ kSecondSobol[1][(reversed >> 8) & 255] ^
-           kSecondSobol[2][(reversed >> 16) & 255] ^ kSecondSobol[3][reversed >> 24];
-  }
-  static constexpr float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
-
+  friend class Draws;
   std::uint32_t pixel_seed_, reversed_index_, dimension_ = 0;
 };
 

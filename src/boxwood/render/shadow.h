@@ -39,6 +39,7 @@ class Shadows {
 
   const Scene& scene_;
   Box3 bounds_;
+  float reach_ = 0;            // the largest coordinate in the scene
   std::vector<Box3> veils_;    // around all that light may go through
   std::vector<char> is_veil_;  // by instance
 };
