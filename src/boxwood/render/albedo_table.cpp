@@ -40,19 +40,6 @@ float weight(AlbedoTable::Lobe lobe, float eta, float alpha, Vec3 outgoing, Vec2
 
 namespace {
 
-/// Where between two knots a cosine is. The angles crowd at the horizon, where albedos change fast: knot i
-/// stands at (i / n)^2.
-struct Knot {
-  Knot(float cosine, int angles) {
-    const float x = std::sqrt(min(max(cosine, 0.0f), 1.0f)) * static_cast<float>(angles - 1);
-    below = std::min(static_cast<int>(x), angles - 2);
-    const float a = static_cast<float>(below * below), b = static_cast<float>((below + 1) * (below + 1));
-    share = (x * x - a) / (b - a);
-  }
-  int below;
-  float share;  // linear in the cosine
-};
-
 float knot_cosine(int i, int angles) {
   const float root = static_cast<float>(i) / static_cast<float>(angles - 1);
   return root * root;
@@ -61,7 +48,7 @@ float knot_cosine(int i, int angles) {
 }  // namespace
 
 float AlbedoRow::at(float cosine) const {
-  const Knot k(cosine, kAngles);
+  const Place k(cosine);
   return values_[k.below] * (1 - k.share) + values_[k.below + 1] * k.share;
 }
 
@@ -89,7 +76,7 @@ float AlbedoRow::sample_missing(float u) const {
 }
 
 float AlbedoRow::missing_density(float cosine) const {
-  const Knot k(cosine, kAngles);
+  const Place k(cosine);
   return (running_missing_[k.below + 1] - running_missing_[k.below]) /
          (knot_cosine(k.below + 1, kAngles) - knot_cosine(k.below, kAngles));
 }

@@ -18,6 +18,23 @@ namespace boxwood::render {
 /// The albedo of a lobe by the cosine of the angle, for one width.
 class AlbedoRow {
  public:
+  static constexpr int kAngles = 128;
+  /// Between which two knots a cosine is. The angles crowd at the horizon, where albedos change fast: knot i
+  /// stands at (i / (kAngles - 1))^2.
+  struct Place {
+    explicit Place(float cosine) {
+      const float x = std::sqrt(min(max(cosine, 0.0f), 1.0f)) * static_cast<float>(kAngles - 1);
+      const int knot = static_cast<int>(x);
+      below = knot < kAngles - 2 ? knot : kAngles - 2;
+      const float a = static_cast<float>(below * below), b = static_cast<float>((below + 1) * (below + 1));
+      share = (x * x - a) / (b - a);
+    }
+    int below;
+    float share;  // of the knot above; linear in the cosine
+  };
+  /// The albedo at a knot.
+  float knot(int i) const { return values_[i]; }
+
   /// The share that leaves in all directions, for light that arrives at this cosine.
   float at(float cosine) const;
   /// The mean over a hemisphere of equal light.
@@ -31,7 +48,6 @@ class AlbedoRow {
  private:
   friend class AlbedoTable;
   void finish();
-  static constexpr int kAngles = 128;
   std::array<float, kAngles> values_{};
   std::array<float, kAngles> running_missing_{};  // up to each knot, of 1 in all
   float mean_ = 0;

@@ -176,16 +176,6 @@ float Bsdf::glass_reflectance(float cosine) const {
   return look_.is_thin ? 2 * f / (1 + f) : f;
 }
 
-/// Interpolated normals let light fall on faces that point away from it, and the shadow that the faces cast
-/// then ends in a jagged line. This fades the light out before. Chiang, Li and Burley, "Taming the Shadow
-/// Terminator", SIGGRAPH Talks 2019. 1 on flat faces.
-float Bsdf::shadow_softening(Vec3 incoming) const {
-  const float alignment = dot(geometric_, z_);
-  if (alignment > 0.99999f) return 1;
-  const float g = max(0.0f, dot(geometric_, to_world(incoming))) / (incoming.z * max(alignment, 1e-4f));
-  return g >= 1 ? 1 : g * (1 + g * (1 - g));
-}
-
 BsdfValue Bsdf::evaluate(Vec3 incoming) const {
   // Nothing comes through the true surface but what is meant to, whatever the interpolated normal says.
   const Vec3 local{dot(x_, incoming), dot(y_, incoming), dot(z_, incoming)};
@@ -215,7 +205,11 @@ Bsdf::Scattered Bsdf::evaluate_lobe(Lobe lobe, Vec3 incoming) const {
   const float lambert = incoming.z / kPi;
   switch (lobe) {
     case diffuse: {
-      if (!(boundary_ > 0)) return {diffuse_ * (lambert * shadow_softening(incoming)), lambert};
+      if (!(boundary_ > 0)) {
+        const float softened =
+            shadow_softening(dot(geometric_, z_), dot(geometric_, to_world(incoming)), incoming.z);
+        return {diffuse_ * (lambert * softened), lambert};
+      }
       // What passes the boundary on the way in and on the way out; on average over all ways in, what passes
       // on the way out alone.
       const float passes = passes_ * (1 - boundary_ * boundary_albedo(incoming.z));
@@ -321,8 +315,9 @@ std::optional<Vec3> Bsdf::sample_lobe(Lobe lobe, float choice, Vec2 u) const {
       if (choice < multiple_) {
         // Where it is missing most, mostly at flat angles.
         const float z = look_.prepared->reflection->nearest(alpha_).sample_missing(u.x);
-        const float radius = std::sqrt(max(0.0f, 1 - z * z)), angle = 2 * kPi * u.y;
-        return Vec3{radius * std::cos(angle), radius * std::sin(angle), z};
+        const float radius = std::sqrt(max(0.0f, 1 - z * z));
+        const Vec2 turn = turn_sine_cosine(u.y);
+        return Vec3{radius * turn.y, radius * turn.x, z};
       }
       break;
     default:

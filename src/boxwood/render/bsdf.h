@@ -37,6 +37,16 @@ struct BsdfValue {
   float pdf = 0;  ///< The density with which sample() finds the direction by its spread lobes.
 };
 
+/// Interpolated normals let light fall on faces that point away from it, and the shadow that the faces cast
+/// then ends in a jagged line. This fades the light out before. Chiang, Li and Burley, "Taming the Shadow
+/// Terminator", SIGGRAPH Talks 2019. The cosines are those between the two normals, and between each of them
+/// and the light. 1 on flat faces.
+inline float shadow_softening(float alignment, float geometric_cosine, float shading_cosine) {
+  const float g = max(0.0f, geometric_cosine) / (shading_cosine * max(alignment, 1e-4f));
+  const float softened = g * (1 + g * (1 - g));
+  return (alignment > 0.99999f) | (g >= 1) ? 1.0f : softened;
+}
+
 class Bsdf {
  public:
   /// At `surface`, seen from `outgoing` (unit length, away from the surface). Keeps a reference to `look`.
@@ -79,7 +89,6 @@ class Bsdf {
   float coat_albedo(float cosine) const;
   float boundary_albedo(float cosine) const;
   float glass_reflectance(float cosine) const;
-  float shadow_softening(Vec3 incoming) const;
   Vec3 to_world(Vec3 local) const { return x_ * local.x + y_ * local.y + z_ * local.z; }
 
   const Look& look_;

@@ -29,18 +29,10 @@ inline void sample_flat_block(const FlatLight* __restrict lights, const Integers
     const Vec3 origin = from.position[i] + from.normal[i] * side;
     const Vec3 end = position + light.normal * (cosine > 0 ? light.clearance : -light.clearance);
     const Vec3 way = end - origin;
-    out.direction.x[i] = direction.x;
-    out.direction.y[i] = direction.y;
-    out.direction.z[i] = direction.z;
-    out.radiance.x[i] = light.radiance.x;
-    out.radiance.y[i] = light.radiance.y;
-    out.radiance.z[i] = light.radiance.z;
-    out.shadow_origin.x[i] = origin.x;
-    out.shadow_origin.y[i] = origin.y;
-    out.shadow_origin.z[i] = origin.z;
-    out.shadow_direction.x[i] = way.x;
-    out.shadow_direction.y[i] = way.y;
-    out.shadow_direction.z[i] = way.z;
+    out.direction.set(i, direction);
+    out.radiance.set(i, light.radiance);
+    out.shadow_origin.set(i, origin);
+    out.shadow_direction.set(i, way);
     out.shadow_end[i] = 1;
     out.is_perfect[i] = 0;
   }

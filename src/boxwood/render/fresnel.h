@@ -10,11 +10,11 @@ namespace boxwood::render {
 /// other side over that of this side. 1 under total internal reflection.
 inline float fresnel_dielectric(float cosine, float eta) {
   const float sine_squared = (1 - cosine * cosine) / (eta * eta);  // on the other side, by Snell's law
-  if (sine_squared >= 1) return 1;
-  const float other_cosine = std::sqrt(1 - sine_squared);
+  const float other_cosine = std::sqrt(max(0.0f, 1 - sine_squared));
   const float parallel = (eta * cosine - other_cosine) / (eta * cosine + other_cosine);
   const float perpendicular = (cosine - eta * other_cosine) / (cosine + eta * other_cosine);
-  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+  const float reflected = 0.5f * (parallel * parallel + perpendicular * perpendicular);
+  return sine_squared >= 1 ? 1.0f : reflected;
 }
 
 /// The share that a metal reflects whose color, seen head-on, is `color`. Schlick, "An Inexpensive BRDF Model

@@ -34,8 +34,9 @@ struct Ggx {
     // is what is seen.
     const Vec3 stretched = normalize(Vec3{alpha * outgoing.x, alpha * outgoing.y, outgoing.z});
     const float z = 1 - u.x * (1 + stretched.z);
-    const float radius = std::sqrt(max(0.0f, 1 - z * z)), angle = 2 * kPi * u.y;
-    const Vec3 half = Vec3{radius * std::cos(angle), radius * std::sin(angle), z} + stretched;
+    const float radius = std::sqrt(max(0.0f, 1 - z * z));
+    const Vec2 turn = turn_sine_cosine(u.y);
+    const Vec3 half = Vec3{radius * turn.y, radius * turn.x, z} + stretched;
     // The floor keeps the vector from vanishing where the facet is seen exactly edge-on.
     return normalize(Vec3{alpha * half.x, alpha * half.y, max(half.z, 1e-7f)});
   }

@@ -92,6 +92,8 @@ PreparedMaterial::PreparedMaterial(const Material& material)
       is_see_through(render::is_see_through(material)),
       has_color_texture(material.color_texture.is_valid()),
       has_normal_texture(material.normal_texture.is_valid()),
+      is_plain(false),
+      alpha(alpha_of(material.roughness, material.roughness_scale)),
       ior(material.ior >= 1 && material.ior < 10 ? material.ior : 1.5f),
       fresnel_mean(1 - (1 - internal_diffuse_reflectance(ior)) * ior * ior) {
   using Lobe = AlbedoTable::Lobe;
@@ -100,8 +102,9 @@ PreparedMaterial::PreparedMaterial(const Material& material)
     if (alpha == 0 && !is_varied) return std::shared_ptr<const AlbedoTable>();
     return AlbedoTable::get(lobe, eta, is_varied ? -1 : alpha);
   };
-  const float alpha = alpha_of(material.roughness, material.roughness_scale);
   const bool is_varied = material.roughness_texture.texture.is_valid();
+  const bool is_boundary_plain = material.kind == Kind::plastic && alpha > 0 && !is_varied && ior > 1;
+  is_plain = material.kind == Kind::matte || is_boundary_plain;
   const bool is_layered = material.kind == Kind::layered;
   if (material.kind == Kind::metal || (is_layered && material.metalness > 0))
     reflection = table(Lobe::reflection, 1, alpha, is_varied);

@@ -39,6 +39,10 @@ struct PreparedMaterial {
   explicit PreparedMaterial(const Material& material);
 
   bool is_emissive, is_mix, is_see_through, has_color_texture, has_normal_texture;
+  /// Plain: a matte base, bare or under a clear boundary whose roughness is the same everywhere and above 0.
+  /// What most surfaces are (plain_block.h).
+  bool is_plain;
+  float alpha;  ///< GGX width, where it is the same everywhere.
   float ior;
   float fresnel_mean;  ///< Of a smooth boundary from outside, over a hemisphere of equal light.
   /// For every width that the material has; null where it has no such lobe.

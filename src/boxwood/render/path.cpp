@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "boxwood/render/draws.h"
 #include "boxwood/render/light.h"
 #include "boxwood/render/material.h"
+#include "boxwood/render/plain_block.h"
 #include "boxwood/render/shadow.h"
 #include "boxwood/render/uv_frame.h"
 
@@ -67,20 +69,22 @@ struct Pending {
 
 /// The hits of a block on their way through a step: where light may come from, and go on to.
 struct Step {
-  Step() { bsdfs.reserve(kBlock); }
-
-  int count = 0;
+  int count = 0, plain_count = 0;
   std::array<std::uint32_t, kBlock> paths;  // positions among the paths on their way
   std::array<Surface, kBlock> surfaces;
-  std::array<Look, kBlock> looks;
   std::array<const Material*, kBlock> materials;
-  std::vector<Bsdf> bsdfs;
+  std::array<bool, kBlock> is_plain;
+  PlainBlock plain;  // how plain surfaces scatter light, and all others:
+  std::array<Look, kBlock> looks;
+  std::array<std::optional<Bsdf>, kBlock> bsdfs;
   Receivers places;
   Leaving leaving;
   Draws draws;
-  Floats light_choices{};
-  Vec2s light_points;
+  Floats light_choices{}, lobe_choices{};
+  Vec2s light_points, directions;
   LightSamples lights;
+
+  bool has_spread(int i) const { return is_plain[i] || bsdfs[i]->has_spread(); }
 };
 
 class PathTracer final : public Integrator {
@@ -221,16 +225,27 @@ class PathTracer final : public Integrator {
       }
     }
 
-    // What scatters light there.
+    // What scatters light there, and to which sides.
     const float uv_width = prepared->has_color_texture ? path.cone_width * uv_density(scene_, hit) : 0.0f;
-    step.looks[point] = look_at(desc, material, *prepared, surface.uv, uv_width);
     const Vec3 normal =
         prepared->has_normal_texture ? mapped_normal(scene_, hit, surface, material) : surface.shading_normal;
-    const Bsdf& bsdf = step.bsdfs.emplace_back(step.looks[point], surface, normal, -path.ray.direction);
+    const Vec3 outgoing = -path.ray.direction;
+    const Vec3 color =
+        prepared->is_plain ? base_color(desc, material, surface.uv, uv_width) : Vec3{0, 0, 0};
+    // (A black base has no lobe.)
+    step.is_plain[point] = max_component(color) > 0;
+    if (step.is_plain[point]) {
+      step.plain.set(point, *prepared, color, surface, normal, outgoing);
+      step.places.normal.set(point, dot(surface.normal, outgoing) < 0 ? -surface.normal : surface.normal);
+      ++step.plain_count;
+    } else {
+      step.looks[point] = look_at(desc, material, *prepared, surface.uv, uv_width);
+      const Bsdf& bsdf = step.bsdfs[point].emplace(step.looks[point], surface, normal, outgoing);
+      step.places.normal.set(point, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
+    }
     step.paths[point] = position;
     step.materials[point] = &material;
     step.places.position.set(point, surface.position);
-    step.places.normal.set(point, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
     step.leaving.position.set(point, surface.position);
     step.leaving.normal.set(point, surface.normal);
     step.leaving.clearance[point] = surface.clearance();
@@ -243,33 +258,40 @@ class PathTracer final : public Integrator {
   void leave(std::vector<Path>& paths, Batch& batch) const {
     Step& step = batch.step;
     const int count = std::exchange(step.count, 0);
+    if (count == 0) return;
+
+    // The first draw chooses a light and a lobe; a second goes to a point of the light, where one is asked for.
     step.draws.draw();
     for (int i = 0; i < count; ++i) {
-      step.light_choices[i] = step.draws.pair(i, 0).x;
+      const Vec2 choices = step.draws.pair(i, 0);
+      step.light_choices[i] = choices.x;
+      step.lobe_choices[i] = choices.y;
       step.light_points.set(i, step.draws.pair(i, 1));
+      step.directions.set(i, step.draws.pair(i, step.has_spread(i) ? 2 : 1));
     }
     lights_.sample(std::span(step.surfaces).first(static_cast<std::size_t>(count)), step.places, step.leaving,
                    step.light_choices, step.light_points, step.lights);
+    if (std::exchange(step.plain_count, 0) > 0)
+      step.plain.scatter(step.lights.direction, step.lobe_choices, step.directions);
+
     for (int i = 0; i < count; ++i) {
       Path& path = paths[step.paths[i]];
-      if (step.bsdfs[i].has_spread() && step.lights.pdf[i] > 0) ask_for_light(path, step, i, batch);
+      if (step.has_spread(i) && step.lights.pdf[i] > 0) ask_for_light(path, step, i, batch);
       batch.goes_on[step.paths[i]] = go_on(path, step, i);
     }
-    step.bsdfs.clear();
   }
 
   /// Goes on in a direction that the surface chooses. False at the path's end.
   static bool go_on(Path& path, const Step& step, int i) {
     const Surface& surface = step.surfaces[i];
-    const Bsdf& bsdf = step.bsdfs[i];
-    // The first draw chose a light and chooses a lobe; a second went to a point of the light.
-    int drawn = bsdf.has_spread() ? 2 : 1;
     const std::optional<BsdfSample> next =
-        bsdf.sample(step.draws.pair(i, 0).y, step.draws.pair(i, drawn++));
+        step.is_plain[i] ? step.plain.next(i)
+                         : step.bsdfs[i]->sample(step.lobe_choices[i], step.directions[i]);
     if (!next) return false;
     path.throughput *= next->weight;
 
     // Russian roulette: end paths that carry little, and let the others stand for them.
+    int drawn = step.has_spread(i) ? 3 : 2;
     if (path.bounce >= kRouletteAfter) {
       const float survival = min(max_component(path.throughput), kMaxSurvival);
       if (!(step.draws.pair(i, drawn++).x < survival)) return false;
@@ -312,7 +334,8 @@ class PathTracer final : public Integrator {
   /// Asks how much of the light that was tried is in sight.
   static void ask_for_light(const Path& path, const Step& step, int i, Batch& batch) {
     const LightSamples& lights = step.lights;
-    const BsdfValue toward = step.bsdfs[i].evaluate(lights.direction[i]);
+    const BsdfValue toward =
+        step.is_plain[i] ? step.plain.toward_light(i) : step.bsdfs[i]->evaluate(lights.direction[i]);
     if (!(max_component(toward.value) > 0)) return;
     const float weight = lights.is_perfect[i] != 0 ? 1 : power_heuristic(lights.pdf[i], toward.pdf);
     batch.ways.push_back({lights.shadow_ray(i), path.absorption});
