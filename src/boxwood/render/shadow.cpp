@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "boxwood/render/block.h"
 #include "boxwood/render/material.h"
 #include "boxwood/scene/surface.h"
 
@@ -53,9 +54,21 @@ bool has_see_through(const SceneDesc& desc, const Instance& instance) {
   return std::any_of(geometry.materials.begin(), geometry.materials.end(), lets_through);
 }
 
+/// Rays of a block.
+struct RayBlock {
+  Vec3s origin, direction;
+  Floats t_max{};
+
+  void set(int i, const Ray& ray) {
+    origin.set(i, ray.origin);
+    direction.set(i, ray.direction);
+    t_max[i] = ray.t_max;
+  }
+};
+
 }  // namespace
 
-Shadows::Shadows(const Scene& scene) : scene_(scene), bounds_(scene.bounds()) {
+Shadows::Shadows(const Scene& scene) : scene_(scene) {
   const SceneDesc& desc = scene.description();
   for (const Instance& instance : placed_instances(desc)) {
     is_veil_.push_back(has_see_through(desc, instance));
@@ -63,42 +76,35 @@ Shadows::Shadows(const Scene& scene) : scene_(scene), bounds_(scene.bounds()) {
     const Geometry& geometry = desc.geometries[instance.geometry.value];
     veils_.push_back(transform_box(instance.world_from_object, box_of(geometry)));
   }
-  if (!bounds_.is_empty()) reach_ = max_component(max(abs(bounds_.lower), abs(bounds_.upper)));
+  const Box3 bounds = scene.bounds();
+  if (!bounds.is_empty()) reach_ = max_component(max(abs(bounds.lower), abs(bounds.upper)));
   if (veils_.size() <= kMaxVeils) return;
   Box3 all;
   for (const Box3& box : veils_) all.extend(box);
   veils_ = {all};
 }
 
-bool Shadows::may_meet_veil(const Ray& ray) const {
-  // Most rays end before they come near, which their own boxes show. Hits stray by a few units in the last
-  // place of what is added up; the slack is many times that. A comparison with NaN keeps the ray.
-  const Vec3 end = ray.direction * ray.t_max + ray.origin;
-  const Vec3 first = min(ray.origin, end), last = max(ray.origin, end);
-  const float slack = (reach_ + max_component(abs(ray.origin))) * 0x1p-18f;
-  const auto is_apart = [slack](float lower, float upper, float box_lower, float box_upper) {
-    return (upper + slack < box_lower) | (lower - slack > box_upper);
-  };
-  const auto is_near = [&](const Box3& box) {
-    return !(is_apart(first.x, last.x, box.lower.x, box.upper.x) |
-             is_apart(first.y, last.y, box.lower.y, box.upper.y) |
-             is_apart(first.z, last.z, box.lower.z, box.upper.z));
-  };
-  if (std::none_of(veils_.begin(), veils_.end(), is_near)) return false;
+#define BOXWOOD_LOOPS "boxwood/render/shadow-inl.h"
+#include "boxwood/core/every_cpu-inl.h"
 
-  const PreparedRay prepared(ray, bounds_);
-  return std::any_of(veils_.begin(), veils_.end(),
-                     [&](const Box3& box) { return prepared.bound(box) <= ray.t_max; });
+void Shadows::find_veiled(std::span<const Way> ways, std::span<char> is_veiled) const {
+  const auto loop = has_avx2() ? avx2::meet_boxes : everywhere::meet_boxes;
+  RayBlock block;
+  for (std::size_t first = 0; first < ways.size(); first += kBlock) {
+    const std::size_t count = std::min<std::size_t>(kBlock, ways.size() - first);
+    for (std::size_t i = 0; i < count; ++i) block.set(static_cast<int>(i), ways[first + i].ray);
+    Integers meets{};
+    for (const Box3& veil : veils_) loop(veil, reach_, block, meets);
+    for (std::size_t i = 0; i < count; ++i) is_veiled[first + i] = meets[i] != 0;
+  }
 }
 
 void Shadows::transmittances(std::span<const Way> ways, std::span<Vec3> out, RayCounts& rays) const {
   std::vector<Ray> plain, veiled;
   std::vector<char> is_veiled(ways.size());
   plain.reserve(ways.size());
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    is_veiled[i] = may_meet_veil(ways[i].ray);
-    (is_veiled[i] ? veiled : plain).push_back(ways[i].ray);
-  }
+  find_veiled(ways, is_veiled);
+  for (std::size_t i = 0; i < ways.size(); ++i) (is_veiled[i] ? veiled : plain).push_back(ways[i].ray);
   const std::unique_ptr<bool[]> is_hidden(new bool[plain.size()]);
   scene_.any_hit(plain, {is_hidden.get(), plain.size()}, &serial_executor());
   std::vector<Hit> hits(veiled.size());

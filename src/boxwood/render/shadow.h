@@ -34,11 +34,10 @@ class Shadows {
   void transmittances(std::span<const Way> ways, std::span<Vec3> out, RayCounts& rays) const;
 
  private:
-  bool may_meet_veil(const Ray& ray) const;
+  void find_veiled(std::span<const Way> ways, std::span<char> is_veiled) const;
   Vec3 walk(const Way& way, const Hit& first_hit, RayCounts& rays) const;
 
   const Scene& scene_;
-  Box3 bounds_;
   float reach_ = 0;            // the largest coordinate in the scene
   std::vector<Box3> veils_;    // around all that light may go through
   std::vector<char> is_veil_;  // by instance
