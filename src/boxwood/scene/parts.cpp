@@ -194,7 +194,8 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
     const Instance& instance = parts->instances[i];
     const Geometry& geometry = parts->desc.geometries[instance.geometry.value];
     bool under_similarity = true;
-    if (instance.world_from_object == Affine3::identity()) {
+    parts->is_moved.push_back(!(instance.world_from_object == Affine3::identity()));
+    if (!parts->is_moved.back()) {
       add_geometry(parts->world, world_triangles, parts->desc, instance.geometry, InstanceId(i));
     } else {
       std::uint32_t& part_index = part_of_geometry[instance.geometry.value];

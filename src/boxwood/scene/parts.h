@@ -63,7 +63,8 @@ struct Placement {
 struct Scene::Parts {
   SceneDesc desc;
   std::vector<Instance> instances;         ///< InstanceId -> placed_instances(desc).
-  std::vector<Affine3> object_from_world;  ///< InstanceId -> the inverse of its transform.
+  std::vector<Affine3> object_from_world;  ///< InstanceId -> the inverse of its transform;
+  std::vector<char> is_moved;              ///< and whether that is another than the identity.
   Part world;
   std::vector<Part> objects;
   std::vector<Placement> placements;

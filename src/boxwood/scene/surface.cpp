@@ -34,7 +34,7 @@ float leaf_test_error(const Triangle& t, Vec3 p) {
   return reach * (16 * u + 8 * u * sliver);
 }
 
-LocalSurface on_triangle(const Triangle& t, float v_weight, float w_weight) {
+inline LocalSurface on_triangle(Triangle t, float v_weight, float w_weight) {
   const float a_weight = 1 - v_weight - w_weight;
   LocalSurface s;
   s.position = t.a * a_weight + t.b * v_weight + t.c * w_weight;
@@ -158,7 +158,7 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   const Instance& instance = parts.instances[hit.instance_id.value];
   const Affine3& world_from_object = instance.world_from_object;
   const Affine3& object_from_world = parts.object_from_world[hit.instance_id.value];
-  const bool is_moved = !(world_from_object == Affine3::identity());
+  const bool is_moved = parts.is_moved[hit.instance_id.value] != 0;
 
   // Ask the geometry, in its own space.
   const auto local = [&]() -> LocalSurface {
