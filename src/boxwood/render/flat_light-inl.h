@@ -24,7 +24,8 @@ inline void sample_flat_block(const FlatLight* __restrict lights, const Integers
     const float reach = std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z);
     out.pdf[i] = is_lit & (pdf > 0) & (pdf < kInfinity) & (reach < kInfinity) ? pdf : 0.0f;
 
-    // From where a ray leaves the surface to just before the light itself, where a ray from there would start.
+    // From where a ray leaves the surface to just before the light itself, where a ray from there would
+    // start.
     const float side = dot(from.normal[i], direction) < 0 ? -from.clearance[i] : from.clearance[i];
     const Vec3 origin = from.position[i] + from.normal[i] * side;
     const Vec3 end = position + light.normal * (cosine > 0 ? light.clearance : -light.clearance);

@@ -12,13 +12,13 @@ namespace boxwood::render {
 
 /// A light whose points are drawn uniformly by area.
 struct FlatLight {
-  Vec3 corner, x, y;         ///< The edges that start at the corner.
-  Vec3 normal;               ///< Of the front.
-  Vec3 radiance;             ///< From the front.
-  float density = 0;         ///< Of its points, per area.
-  float clearance = 0;       ///< How far along the normal a ray to it has to end.
-  float is_triangle = 0;     ///< 1, or 0 for a parallelogram.
-  float is_two_sided = 0;    ///< 1, or 0.
+  Vec3 corner, x, y;       ///< The edges that start at the corner.
+  Vec3 normal;             ///< Of the front.
+  Vec3 radiance;           ///< From the front.
+  float density = 0;       ///< Of its points, per area.
+  float clearance = 0;     ///< How far along the normal a ray to it has to end.
+  float is_triangle = 0;   ///< 1, or 0 for a parallelogram.
+  float is_two_sided = 0;  ///< 1, or 0.
 };
 
 /// Points on surfaces that rays leave from.

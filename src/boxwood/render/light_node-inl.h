@@ -22,8 +22,7 @@ inline void weigh_block(const LightNode& node, const Receivers& from, BlockWeigh
     }
     for (int i = 0; i < kBlock; ++i) {
       const Vec3 normal = from.normal[i];
-      weights[i] =
-          child.weight(from.position[i], normal, length_squared(normal) > 0 ? 0.0f : 1.0f);
+      weights[i] = child.weight(from.position[i], normal, length_squared(normal) > 0 ? 0.0f : 1.0f);
     }
   }
   for (int i = 0; i < kBlock; ++i)

@@ -87,7 +87,7 @@ struct LightNode {
   void set(int lane, const LightBounds& bounds);
 
   LightChild operator[](int i) const {
-    return {x[i],          y[i],          z[i],        radius[i], axis_x[i],       axis_y[i], axis_z[i],
+    return {x[i],          y[i],          z[i],          radius[i],   axis_x[i], axis_y[i],       axis_z[i],
             cos_facing[i], sin_facing[i], cos_spread[i], strength[i], turned[i], least_falloff[i]};
   }
   /// The weights of all children for one point; and their sum.

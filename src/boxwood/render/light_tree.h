@@ -5,8 +5,8 @@
 // each node to one of the children, by how much light each could send to the point. All eight are weighed at
 // once, by vectors of floats. Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree
 // Splitting", HPG 2018 (without the splitting, and with a wider tree); angles are handled by their cosines as
-// in Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.6.3. A block of points walks down
-// together as far as its paths are one: the root is weighed for all of them at once.
+// in Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.6.3. A block of points walks
+// down together as far as its paths are one: the root is weighed for all of them at once.
 //
 // Invariant: a light that could send light to the point is drawn with a chance above 0.
 #pragma once

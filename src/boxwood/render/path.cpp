@@ -190,8 +190,8 @@ class PathTracer final : public Integrator {
 
   std::size_t group_of(const Hit& hit) const { return hit ? group_of_instance_[hit.instance_id.value] : 0; }
 
-  /// Takes a path to what its ray hit. True where it goes straight on from there; otherwise it has come to its
-  /// end, unless it now is part of the step.
+  /// Takes a path to what its ray hit. True where it goes straight on from there; otherwise it has come to
+  /// its end, unless it now is part of the step.
   bool arrive(Path& path, const Hit& hit, std::uint32_t position, Step& step) const {
     if (max_component(path.absorption) > 0)
       path.throughput *= beer(path.absorption, hit ? hit.t * length(path.ray.direction) : kInfinity);
@@ -230,8 +230,7 @@ class PathTracer final : public Integrator {
     const Vec3 normal =
         prepared->has_normal_texture ? mapped_normal(scene_, hit, surface, material) : surface.shading_normal;
     const Vec3 outgoing = -path.ray.direction;
-    const Vec3 color =
-        prepared->is_plain ? base_color(desc, material, surface.uv, uv_width) : Vec3{0, 0, 0};
+    const Vec3 color = prepared->is_plain ? base_color(desc, material, surface.uv, uv_width) : Vec3{0, 0, 0};
     // (A black base has no lobe.)
     step.is_plain[point] = max_component(color) > 0;
     if (step.is_plain[point]) {
@@ -260,7 +259,8 @@ class PathTracer final : public Integrator {
     const int count = std::exchange(step.count, 0);
     if (count == 0) return;
 
-    // The first draw chooses a light and a lobe; a second goes to a point of the light, where one is asked for.
+    // The first draw chooses a light and a lobe; a second goes to a point of the light, where one is asked
+    // for.
     step.draws.draw();
     for (int i = 0; i < count; ++i) {
       const Vec2 choices = step.draws.pair(i, 0);
@@ -339,8 +339,8 @@ class PathTracer final : public Integrator {
     if (!(max_component(toward.value) > 0)) return;
     const float weight = lights.is_perfect[i] != 0 ? 1 : power_heuristic(lights.pdf[i], toward.pdf);
     batch.ways.push_back({lights.shadow_ray(i), path.absorption});
-    batch.pending.push_back({step.paths[i], path.throughput * toward.value * lights.radiance[i] *
-                                                (weight / lights.pdf[i])});
+    batch.pending.push_back(
+        {step.paths[i], path.throughput * toward.value * lights.radiance[i] * (weight / lights.pdf[i])});
   }
 
   const PreparedMaterial& prepared(MaterialId id) const {

@@ -1,7 +1,7 @@
 // plain_block-inl.h: the loops of plain_block.h.
 //
-// Included once for each instruction set, in a namespace of its own; no include guard. The order of operations
-// is that of bsdf.cpp.
+// Included once for each instruction set, in a namespace of its own; no include guard. The order of
+// operations is that of bsdf.cpp.
 
 /// What the boundary reflects in all, of light at each cosine. Tables are read one by one, by no vectors.
 inline void boundary_albedos(const PlainPoints& __restrict p, const Floats& cosines, Floats& __restrict out) {
@@ -66,9 +66,10 @@ inline void prepare_block(PlainPoints& p) {
   set_shares(p, albedos);
 }
 
-/// What the lobes send to a point's viewer of the light from `incoming`, in its frame; `albedo` is that of the
-/// boundary there. Nothing from below.
-[[gnu::always_inline]] inline BsdfValue evaluate_plain(const PlainPoints& p, int i, Vec3 incoming, float albedo, bool is_possible) {
+/// What the lobes send to a point's viewer of the light from `incoming`, in its frame; `albedo` is that of
+/// the boundary there. Nothing from below.
+[[gnu::always_inline]] inline BsdfValue evaluate_plain(const PlainPoints& p, int i, Vec3 incoming,
+                                                       float albedo, bool is_possible) {
   const Vec3 outgoing = p.outgoing[i], diffuse = p.diffuse[i], geometric = p.geometric[i];
   const float lambert = incoming.z / kPi;
 
@@ -123,15 +124,13 @@ inline void sample_block(const PlainPoints& __restrict p, const Floats& __restri
     const Vec3 spread = cosine_hemisphere(u[i]);
     const bool is_mirrored = (choices[i] < p.specular_chance[i]) | !(p.diffuse_chance[i] > 0);
     local.set(i, {is_mirrored ? mirrored.x : spread.x, is_mirrored ? mirrored.y : spread.y,
-         is_mirrored ? mirrored.z : spread.z});
+                  is_mirrored ? mirrored.z : spread.z});
   }
   boundary_albedos(p, local.z, albedos);
   for (int i = 0; i < kBlock; ++i) {
     const Vec3 way = local[i];
-    const Vec3 direction =
-        normalize(p.x_axis[i] * way.x + p.y_axis[i] * way.y + p.z_axis[i] * way.z);
-    const BsdfValue found =
-        evaluate_plain(p, i, way, albedos[i], dot(direction, p.geometric[i]) > 0);
+    const Vec3 direction = normalize(p.x_axis[i] * way.x + p.y_axis[i] * way.y + p.z_axis[i] * way.z);
+    const BsdfValue found = evaluate_plain(p, i, way, albedos[i], dot(direction, p.geometric[i]) > 0);
     directions.set(i, direction);
     weights.set(i, found.value / found.pdf);
     pdfs[i] = found.pdf;

@@ -26,7 +26,7 @@ const AlbedoRow kNoBoundary{};
 }  // namespace
 
 PlainBlock::PlainBlock() {
-  const PreparedMaterial matte{Material{}};
+  static const PreparedMaterial matte{Material{}};
   const Vec3 up{0, 0, 1};
   Surface surface{};
   surface.normal = up;
@@ -35,7 +35,8 @@ PlainBlock::PlainBlock() {
 
 void PlainBlock::set(int i, const PreparedMaterial& material, Vec3 color, const Surface& surface, Vec3 normal,
                      Vec3 outgoing) {
-  const AlbedoRow* row = material.coat_over_base ? &material.coat_over_base->nearest(material.alpha) : nullptr;
+  const AlbedoRow* row =
+      material.coat_over_base ? &material.coat_over_base->nearest(material.alpha) : nullptr;
   points_.normal.set(i, surface.normal);
   points_.shading_normal.set(i, normal);
   points_.outgoing_world.set(i, outgoing);

@@ -1,8 +1,9 @@
 // plain_block.h: how do many points of plain surfaces scatter light?
 //
-// Plain is a matte base, bare or under a clear and evenly rough boundary: what most surfaces are. They scatter
-// by arithmetic and selects alone, so a block of points (block.h) is worked on by vectors. Each point gets the
-// numbers that a Bsdf (bsdf.h) would give it, bit for bit; the formulas of the lobes are the same functions.
+// Plain is a matte base, bare or under a clear and evenly rough boundary: what most surfaces are. They
+// scatter by arithmetic and selects alone, so a block of points (block.h) is worked on by vectors. Each point
+// gets the numbers that a Bsdf (bsdf.h) would give it, bit for bit; the formulas of the lobes are the same
+// functions.
 #pragma once
 
 #include <optional>

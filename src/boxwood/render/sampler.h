@@ -47,9 +47,9 @@ constexpr std::uint32_t owen_scramble_reversed(std::uint32_t reversed, std::uint
 }
 
 /// The second coordinate of the Sobol sequence, its bits reversed. The direction numbers of that coordinate
-/// are the rows of Pascal's triangle modulo 2, so the bits of the index, as a polynomial p(x) over them, become
-/// those of p(x + 1); and as (x + 1)^n = x^n + 1 for powers of two, the upper half of each group of bits is
-/// added to the lower half, for halves of 16, 8, 4, 2 and 1 bits.
+/// are the rows of Pascal's triangle modulo 2, so the bits of the index, as a polynomial p(x) over them,
+/// become those of p(x + 1); and as (x + 1)^n = x^n + 1 for powers of two, the upper half of each group of
+/// bits is added to the lower half, for halves of 16, 8, 4, 2 and 1 bits.
 constexpr std::uint32_t second_sobol_reversed(std::uint32_t index) {
   index ^= index >> 16;
   index ^= (index & 0xff00ff00u) >> 8;

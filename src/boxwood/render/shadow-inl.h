@@ -4,7 +4,8 @@
 
 /// Marks the rays that may meet something in `box`. Hits stray from the ray by a few units in the last place
 /// of what is added up, and so does what is worked out here; the slack is many times that. `reach` is the
-/// largest coordinate in the scene. Where a slab gives no number, only by an infinite plane, all else decides.
+/// largest coordinate in the scene. Where a slab gives no number, only by an infinite plane, all else
+/// decides.
 inline void meet_boxes(const Box3& box, float reach, const RayBlock& __restrict rays,
                        Integers& __restrict meets) {
   const Vec3 lower = box.lower, upper = box.upper;
