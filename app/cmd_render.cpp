@@ -170,7 +170,7 @@ void render_command(const RenderArguments& arguments) {
   if (!is_finished && arguments.checkpoint_seconds > 0) checkpoint.write(job);
   write_outputs_or_checkpoint(arguments, job, result.image, checkpoint);
   if (!arguments.preview.empty())
-    write_picture(arguments.preview, job.picture(), options.mode, arguments.look);
+    write_picture(arguments.preview, job.picture(), options.mode, arguments.look, io::Lasting::no);
   if (result.dropped_samples > 0)
     print_error("boxwood: warning: {} samples were not finite and were left out\n", result.dropped_samples);
   if (!is_finished)

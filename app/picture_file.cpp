@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include "boxwood/core/error.h"
-#include "boxwood/io/file_bytes.h"
 #include "boxwood/io/image.h"
 
 namespace boxwood::app {
@@ -34,22 +33,23 @@ std::string picture_ending_problem(const std::string& path) {
   return is_known ? std::string() : path + " does not end in .png, .exr or .hdr";
 }
 
-void write_picture(const std::string& path, const Image& image, render::Mode mode, const PictureLook& look) {
+void write_picture(const std::string& path, const Image& image, render::Mode mode, const PictureLook& look,
+                   io::Lasting lasting) {
   const std::string ending = io::lower_extension(path);
-  if (ending == ".exr") return io::write_image(path, image, {.is_half = look.is_half});
+  if (ending == ".exr") return io::write_image(path, image, {.is_half = look.is_half}, lasting);
   Image picture = render::displayable(image, mode);
   if (ending == ".png") {
     if (mode == render::Mode::path)
       picture =
           render::toned(picture, static_cast<float>(look.exposure_stops), render::tone_from_name(look.tone));
-    return io::write_image(path, picture);
+    return io::write_image(path, picture, {}, lasting);
   }
   // Radiance .hdr files have three channels.
-  if (picture.channels == 3) return io::write_image(path, picture);
+  if (picture.channels == 3) return io::write_image(path, picture, {}, lasting);
   Image grey(picture.width, picture.height, 3);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) grey.pixels[3 * i + c] = picture.pixels[i];
-  io::write_image(path, grey);
+  io::write_image(path, grey, {}, lasting);
 }
 
 void write_here_or_in_temp(const std::string& path,

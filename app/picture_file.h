@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "boxwood/io/file_bytes.h"
 #include "boxwood/render/render.h"
 #include "boxwood/render/tone.h"
 
@@ -26,7 +27,8 @@ std::string picture_ending_problem(const std::string& path);
 
 /// Writes what the file can hold: EXR keeps all numbers as they are, HDR the light, PNG what an eye can see.
 /// Throws FileError.
-void write_picture(const std::string& path, const Image& image, render::Mode mode, const PictureLook& look);
+void write_picture(const std::string& path, const Image& image, render::Mode mode, const PictureLook& look,
+                   io::Lasting lasting = io::Lasting::yes);
 
 /// As `write`, which is to make the file `path`, but when that fails, puts the file into the folder for
 /// temporary files, and throws a FileError that says where it is.

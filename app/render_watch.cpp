@@ -49,8 +49,9 @@ bool RenderWatch::update(const render::RenderStatus& status) {
 
   if (status.is_whole)
     preview_.maybe([&] {
-      try_to("there is no preview",
-             [&] { write_picture(options_.preview, job_.picture(), job_.options().mode, options_.look); });
+      try_to("there is no preview", [&] {
+        write_picture(options_.preview, job_.picture(), job_.options().mode, options_.look, io::Lasting::no);
+      });
     });
   checkpoints_.maybe(
       [&] { try_to("the render goes on without a new checkpoint", [&] { checkpoint_.write(job_); }); });

@@ -8,10 +8,30 @@
 #include "boxwood/core/error.h"
 #include "io/files.h"
 
+namespace {
+int times_waited = 0;
+}
+
+// The program's own function takes the place of the system's: it tells how often the disk was waited for.
+extern "C" int fsync(int) {
+  ++times_waited;
+  return 0;
+}
+
 namespace boxwood::io {
 namespace {
 
 using WholeFiles = Files;
+
+TEST_F(WholeFiles, WaitForTheDiskWhereTheyMustLast) {
+  times_waited = 0;
+  write_file(path("result.exr"), "text");
+  EXPECT_EQ(times_waited, 2);  // for the file, and for its name
+  write_file(path("preview.png"), "text", Lasting::no);
+  EXPECT_EQ(times_waited, 2);
+  EXPECT_EQ(read_file(path("preview.png")), "text");
+  EXPECT_EQ(file_count(), 2u);
+}
 
 TEST_F(WholeFiles, ReplaceWhatWasThere) {
   write_file(path("a.json"), "a much longer text");

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "boxwood/render/sampler.h"
+
 namespace boxwood::render {
 namespace {
 
@@ -32,9 +34,10 @@ TEST(Filters, SamplesFallWhereTheWeightIs) {
     // A grid of points; along x they are counted in bins, with the signs that y adds on average.
     constexpr int kPoints = 400, kBins = 16;
     std::array<double, kBins> counts{};
+    std::uint32_t index = 0;
     for (int i = 0; i < kPoints; ++i)
       for (int j = 0; j < kPoints; ++j) {
-        const FilterSample sample = sampler.sample({(i + 0.5f) / kPoints, (j + 0.5f) / kPoints});
+        const FilterSample sample = sampler.sample({(i + 0.5f) / kPoints, (j + 0.5f) / kPoints}, index++);
         ASSERT_LE(std::fabs(sample.offset.x), radius);
         ASSERT_LE(std::fabs(sample.offset.y), radius);
         const int bin = static_cast<int>((sample.offset.x + radius) / (2 * radius) * kBins);
@@ -47,6 +50,31 @@ TEST(Filters, SamplesFallWhereTheWeightIs) {
           << filter_name(filter) << ", bin " << bin;
     }
   }
+}
+
+TEST(Filters, SignsComeEvenlyAndNeverLeaveAPixelWithoutAMean) {
+  // The share of the plane's magnitude that is negative, by quadrature.
+  const auto value = [](double x) { return filter_value(Filter::mitchell, x); };
+  const double magnitude = integral(-2, 2, [&](double x) { return std::fabs(value(x)); });
+  const double net = integral(-2, 2, value) / magnitude;
+  const double share = (1 - net * net) / 2;
+
+  const FilterSampler sampler(Filter::mitchell);
+  int negative = 0;
+  for (std::uint32_t index = 0; index < 5000; ++index) {
+    Sampler numbers(3, index);
+    const FilterSample sample = sampler.sample(numbers.next_2d(), index);
+    const double at = value(sample.offset.x) * value(sample.offset.y);
+    // Within a cell the filter is taken for even, so a sample may fall a little beyond a zero.
+    if (std::fabs(at) > 0.05) EXPECT_EQ(sample.sign, at > 0 ? 1 : -1) << index;
+    negative += sample.sign < 0;
+    const double count = index + 1.0;
+    ASSERT_NEAR(negative, share * count, 1 + 0.001 * count) << count;
+    ASSERT_LE(negative, share * count + 0.001 * count) << count;
+  }
+  for (const Filter filter : {Filter::box, Filter::tent, Filter::gaussian, Filter::blackman_harris})
+    for (std::uint32_t index = 0; index < 200; ++index)
+      EXPECT_EQ(FilterSampler(filter).sample({0.3f, 0.9f}, index).sign, 1);
 }
 
 TEST(Filters, HaveTheShapesOfTheirPapers) {

@@ -56,6 +56,20 @@ class BackwardExecutor final : public Executor {
   }
 };
 
+TEST(Render, AFilterWithNegativeLobesLeavesNoPixelBlack) {
+  // Everywhere is the same light, so however few samples there are, their mean is that light.
+  SceneDesc desc;
+  desc.sky = constant_sky(1);
+  const Scene scene(desc);
+  for (const int samples : {2, 3, 4, 8, 32}) {
+    RenderOptions options;
+    options.width = options.height = 40;
+    options.samples = samples;
+    options.filter = Filter::mitchell;
+    for (const float value : render_picture(scene, options).image.pixels) ASSERT_EQ(value, 1) << samples;
+  }
+}
+
 TEST(Render, SameBitsForAnyThreadsAndAnyOrderOfTiles) {
   const Scene scene(small_scene());
   for (const Mode mode : {Mode::path, Mode::color, Mode::normal, Mode::depth, Mode::occlusion, Mode::cost}) {

@@ -71,11 +71,13 @@ bool is_device_or_pipe(const std::filesystem::path& path) {
   return type == file_type::character || type == file_type::block || type == file_type::fifo;
 }
 
-void write_file(const std::filesystem::path& path, std::string_view bytes) {
-  write_file(path, [bytes](const ByteSink& sink) { sink(bytes); });
+void write_file(const std::filesystem::path& path, std::string_view bytes, Lasting lasting) {
+  write_file(
+      path, [bytes](const ByteSink& sink) { sink(bytes); }, lasting);
 }
 
-void write_file(const std::filesystem::path& path, const std::function<void(const ByteSink&)>& produce) {
+void write_file(const std::filesystem::path& path, const std::function<void(const ByteSink&)>& produce,
+                Lasting lasting) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
@@ -120,11 +122,13 @@ void write_file(const std::filesystem::path& path, const std::function<void(cons
     reason = first_errno != 0 ? std::strerror(first_errno) : "the disk took only a part of it";
   } else if (!is_stream) {
     // Contents before the name: after a loss of power the name must not stand for a file without them.
-    if (const int problem = bring_to_disk(part); problem != 0) reason = std::strerror(problem);
+    const bool is_lasting = lasting == Lasting::yes;
+    if (const int problem = is_lasting ? bring_to_disk(part) : 0; problem != 0)
+      reason = std::strerror(problem);
     if (reason.empty()) std::filesystem::rename(part, target, error);
     if (error) reason = error.message();
     // The new file is whole under either name; when the folder gets there is the system's affair.
-    if (reason.empty()) (void)bring_to_disk(folder);
+    if (reason.empty() && is_lasting) (void)bring_to_disk(folder);
   }
   if (!reason.empty()) {
     give_up();

@@ -22,16 +22,20 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// Whether `path` names something that takes bytes and keeps no file, such as /dev/null or a named pipe.
 bool is_device_or_pipe(const std::filesystem::path& path);
 
-/// Writes the bytes beside `path`, waits until they are on the disk, and renames them into place, so that
-/// `path` is never a partial file, not even after a loss of power, and keeps what it was when something
-/// fails. A link stays and the file behind it is replaced; devices and pipes are written to. Throws
-/// FileError.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+/// Whether a file must be whole even after a loss of power. To wait for the disk takes a moment, which files
+/// that are soon replaced do not need.
+enum class Lasting { no, yes };
+
+/// Writes the bytes beside `path`, waits until they are on the disk if they must last, and renames them into
+/// place, so that `path` is never a partial file and keeps what it was when something fails. A link stays and
+/// the file behind it is replaced; devices and pipes are written to. Throws FileError.
+void write_file(const std::filesystem::path& path, std::string_view bytes, Lasting lasting = Lasting::yes);
 
 /// The same for bytes that come in pieces: `produce` hands them to `sink`, one after another. When `produce`
 /// throws, nothing is left behind.
 using ByteSink = std::function<void(std::string_view)>;
-void write_file(const std::filesystem::path& path, const std::function<void(const ByteSink& sink)>& produce);
+void write_file(const std::filesystem::path& path, const std::function<void(const ByteSink& sink)>& produce,
+                Lasting lasting = Lasting::yes);
 
 /// Removes the parts that programs left beside `path` that were killed while they wrote it.
 void remove_parts(const std::filesystem::path& path);

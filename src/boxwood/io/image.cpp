@@ -218,7 +218,8 @@ struct ExrPixels {
   std::vector<char> bytes;
 };
 
-void write_image(const std::filesystem::path& path, const Image& image, const ExrOptions& exr) {
+void write_image(const std::filesystem::path& path, const Image& image, const ExrOptions& exr,
+                 Lasting lasting) {
   const std::string name = path.string(), extension = lower_extension(path);
   const bool is_png = extension == ".png";
   if (!is_png && extension != ".exr" && extension != ".hdr")
@@ -273,7 +274,7 @@ void write_image(const std::filesystem::path& path, const Image& image, const Ex
     if (!is_written || !output->close())
       throw FileError(name, "", "cannot be encoded: " + one_line(output->geterror()));
   });
-  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, lasting);
 }
 
 Image read_image(const std::filesystem::path& path) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "boxwood/core/error.h"
+#include "boxwood/io/file_bytes.h"
 #include "boxwood/scene/description.h"
 #include "boxwood/scene/image.h"
 
@@ -26,9 +27,10 @@ struct ExrOptions {
 
 /// Writes `image` beside `path` and renames it into place, so that `path` is never a partial file. The ending
 /// chooses the format: .png (8 bits, encoded as sRGB, clamped to [0, 1]; needs 1, 3 or 4 channels), .exr
-/// (float unless asked otherwise), .hdr. Throws FileError when the ending is not one of these or the file
-/// cannot be written.
-void write_image(const std::filesystem::path& path, const Image& image, const ExrOptions& exr = {});
+/// (float unless asked otherwise), .hdr. `lasting` is as for write_file. Throws FileError when the ending is
+/// not one of these or the file cannot be written.
+void write_image(const std::filesystem::path& path, const Image& image, const ExrOptions& exr = {},
+                 Lasting lasting = Lasting::yes);
 
 /// Reads any picture that OpenImageIO reads, as linear floats. Throws FileError.
 Image read_image(const std::filesystem::path& path);

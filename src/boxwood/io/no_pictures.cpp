@@ -13,7 +13,7 @@ namespace {
 
 }  // namespace
 
-void write_image(const std::filesystem::path& path, const Image&, const ExrOptions&) {
+void write_image(const std::filesystem::path& path, const Image&, const ExrOptions&, Lasting) {
   refuse(path.string());
 }
 ExrFile read_exr(const std::filesystem::path& path) {

@@ -59,8 +59,7 @@ float filter_radius(Filter filter) {
   return 0;
 }
 
-FilterSampler::FilterSampler(Filter filter)
-    : filter_(filter), radius_(filter_radius(filter)), zero_(filter_radius(filter)) {
+FilterSampler::FilterSampler(Filter filter) : filter_(filter), radius_(filter_radius(filter)) {
   // Integrate the magnitude over each cell by Simpson's rule.
   const double width = 2.0 * radius_ / kCells;
   std::array<double, kCells + 1> below{};
@@ -71,30 +70,42 @@ FilterSampler::FilterSampler(Filter filter)
   }
   for (int i = 0; i <= kCells; ++i) share_[i] = static_cast<float>(below[i] / below[kCells]);
 
-  // The place where a filter with negative lobes changes sign, by bisection.
-  if (filter_value(filter_, 0.75 * radius_) >= 0) return;
-  double positive = 0, negative = 0.75 * radius_;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (positive + negative) / 2;
-    (filter_value(filter_, middle) < 0 ? negative : positive) = middle;
-  }
-  zero_ = static_cast<float>(positive);
+  // The share of the lobe at the lower end, if there is one: up to where the filter changes sign.
+  double negative = 0;
+  for (int i = 0; i < kCells / 2; ++i)
+    if (filter_value(filter_, (i + 0.5) * width - radius_) < 0) negative = below[i + 1] / below[kCells];
+  negative_ = static_cast<float>(negative);
 }
 
-FilterSampler::Axis FilterSampler::along_axis(float u) const {
+float FilterSampler::along_axis(float u) const {
   // The cell whose share of the integral holds u; inside it the filter is taken for even.
   const auto after = std::upper_bound(share_.begin() + 1, share_.end() - 1, u);
   const auto cell = static_cast<std::size_t>(after - share_.begin()) - 1;
   const float inside = (u - share_[cell]) / (share_[cell + 1] - share_[cell]);
-  const float x = (static_cast<float>(cell) + inside) * (2 * radius_ / kCells) - radius_;
-  return {x, std::fabs(x) > zero_};
+  return (static_cast<float>(cell) + inside) * (2 * radius_ / kCells) - radius_;
 }
 
-FilterSample FilterSampler::sample(Vec2 u) const {
+/// The same in the positive part alone, or in both negative lobes.
+float FilterSampler::along_axis(float u, bool is_negative) const {
+  if (!is_negative) return along_axis(negative_ + u * (1 - 2 * negative_));
+  return along_axis(u < 0.5f ? 2 * u * negative_ : 1 - 2 * (1 - u) * negative_);
+}
+
+FilterSample FilterSampler::sample(Vec2 u, std::uint32_t index) const {
   if (filter_ == Filter::box) return {{u.x - 0.5f, u.y - 0.5f}};
   if (filter_ == Filter::tent) return {{tent(u.x), tent(u.y)}};
-  const Axis x = along_axis(u.x), y = along_axis(u.y);
-  return {{x.offset, y.offset}, x.is_negative != y.is_negative ? -1 : 1};
+  if (!(negative_ > 0)) return {{along_axis(u.x), along_axis(u.y)}};
+
+  // The product of both axes is negative where one of them is. Whether it is this sample's turn: whether the
+  // negative share of all samples so far passes a whole number.
+  const double along = 2.0 * negative_, share = 2 * along * (1 - along);
+  const bool is_negative = std::floor((index + 1.0) * share) > std::floor(index * share);
+  // One of the two parts that the plane has of this sign; what is left of u.x goes on.
+  const double first = is_negative ? 0.5 : along * along / (1 - share);
+  const bool is_first = u.x < first;
+  const double left = is_first ? u.x / first : (u.x - first) / (1 - first);
+  const float x = std::min(static_cast<float>(left), 0x1.fffffep-1f);
+  return {{along_axis(x, is_first), along_axis(u.y, is_first != is_negative)}, is_negative ? -1 : 1};
 }
 
 std::string_view filter_name(Filter filter) {

@@ -3,9 +3,15 @@
 // Samples are spread by the filter instead of being weighed by it, so each belongs to one pixel only and the
 // film needs no neighbours (Ernst, Stamminger and Greiner, "Filter Importance Sampling", 2006). Where a
 // filter is negative, samples are spread by its magnitude and count with sign -1.
+//
+// Signs are not left to chance: a pixel with one sample of each sign would have no mean, and one with two
+// against three hardly any. Negative samples come one at a time, evenly among the others, in the share that
+// is theirs. So at any time nearly the right part of them has come, and none before there is enough to
+// subtract from.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 #include "boxwood/core/vec.h"
@@ -30,20 +36,18 @@ struct FilterSample {
 class FilterSampler {
  public:
   explicit FilterSampler(Filter filter);
-  /// `u` in the unit square. Well spread points stay well spread.
-  FilterSample sample(Vec2 u) const;
+  /// Of the `index`-th sample of a pixel; `u` in the unit square. Well spread points stay well spread.
+  FilterSample sample(Vec2 u, std::uint32_t index) const;
 
  private:
   static constexpr int kCells = 256;
-  struct Axis {
-    float offset;
-    bool is_negative;
-  };
-  Axis along_axis(float u) const;
+  float along_axis(float u) const;
+  float along_axis(float u, bool is_negative) const;
 
   Filter filter_;
   std::array<float, kCells + 1> share_{};  // of the magnitude's integral that lies below the edge of a cell
-  float radius_, zero_;                    // beyond `zero_` the filter is negative
+  float radius_;
+  float negative_ = 0;  // the share of the magnitude at one end of an axis, where the filter is negative
 };
 
 /// The filter in one dimension, up to a factor; 0 beyond its radius.

@@ -92,7 +92,8 @@ UnitResult RenderJob::render(const Unit& unit) const {
                            static_cast<std::uint32_t>(x);
         Sampler sampler(pixel, static_cast<std::uint32_t>(s));
         const Vec2 jitter = sampler.next_2d(), lens = sampler.next_2d();
-        const FilterSample place = options_.samples > 1 ? filter_.sample(jitter) : FilterSample{};
+        const FilterSample place =
+            options_.samples > 1 ? filter_.sample(jitter, static_cast<std::uint32_t>(s)) : FilterSample{};
         const Vec2 point{static_cast<float>(x) + 0.5f + place.offset.x,
                          static_cast<float>(y) + 0.5f + place.offset.y};
         batch.rays.push_back(lens_.ray(point, lens));
