@@ -54,7 +54,7 @@ void count_contents(const SceneDesc& desc, SceneReport& out) {
   }
   out.textures = desc.textures.size();
   for (const Texture& texture : desc.textures) {
-    out.texels += texture.texels.size();
+    out.texels += std::size_t(texture.width) * texture.height;
     out.texture_bytes += texture.texels.size() * sizeof(texture.texels[0]);
   }
   out.point_lights = desc.point_lights.size();

@@ -8,7 +8,7 @@
 #include <tiny_gltf.h>
 
 #include "boxwood/io/gltf_accessor.h"
-#include "boxwood/io/image.h"
+#include "boxwood/io/picture_cache.h"
 
 namespace boxwood::io::gltf {
 namespace {
@@ -103,9 +103,9 @@ Texture read_picture(const File& file, int index) {
   const tinygltf::Image& image = file.model->images[index];
   const std::string where = "image " + std::to_string(index);
   std::string name = !image.name.empty() ? image.name : where;
-  if (image.bufferView >= 0) return read_texture(view_bytes(file, image.bufferView, where), name);
+  if (image.bufferView >= 0) return open_texture(view_bytes(file, image.bufferView, where), name);
   if (image.image.empty()) file.fail(where, "there is no file " + image.uri.substr(0, 100));
-  return read_texture(std::as_bytes(std::span(image.image)), name);
+  return open_texture(std::as_bytes(std::span(image.image)), name);
 }
 
 /// Every picture that the materials use, decoded in parallel; a broken one is empty and named in a warning.
@@ -240,7 +240,7 @@ class MaterialMaker {
 
   const Texture* find(int image) const {
     const auto found = pictures_.find(image);
-    return found != pictures_.end() && !found->second.texels.empty() ? &found->second : nullptr;
+    return found != pictures_.end() && found->second.width > 0 ? &found->second : nullptr;
   }
 
   /// The scene's texture for one way of using a picture; each is there once. None, with a warning, where
@@ -274,7 +274,8 @@ class MaterialMaker {
     placed.width = picture->width;
     placed.height = picture->height;
     placed.texels = picture->texels;
-    placed.is_srgb = is_color;  // base colors and lights always are, numbers never
+    placed.source = picture->source;
+    placed.is_srgb = is_color && picture->is_srgb;  // numbers never are
     return entry->second = desc_.add(std::move(placed));
   }
 

@@ -54,28 +54,13 @@ void check_shape(const std::string& path, const Image& image) {
                         std::to_string(image.pixels.size()) + " numbers cannot be written");
 }
 
-// The format that OpenImageIO shall try:
-// by the first bytes, since a name may be missing or lie, else by the name's ending.
-std::string format_of(std::string_view bytes, const std::string& name) {
-  constexpr struct {
-    std::string_view magic;
-    const char* format;
-  } kFormats[] = {{"\x89PNG", "png"}, {"\xff\xd8\xff", "jpg"}, {"\x76\x2f\x31\x01", "exr"},
-                  {"#?R", "hdr"},     {"GIF8", "gif"},         {"BM", "bmp"}};
-  for (const auto& [magic, format] : kFormats)
-    if (bytes.starts_with(magic)) return format;
-  if (bytes.size() > 12 && bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "webp";
-  const std::string extension = lower_extension(name);
-  return extension.empty() ? "" : extension.substr(1);
-}
-
 /// A picture file in memory that OpenImageIO has opened.
 class PictureFile {
  public:
   PictureFile(std::string_view bytes, const std::string& name)
       : name_(name),
-        format_(format_of(bytes, name)),
-        bytes_(checked(bytes)),
+        format_(picture_format(bytes, name)),
+        bytes_(checked_picture(bytes, name)),
         memory_(bytes_.data(), bytes_.size()) {
     // Keep colors as the file has them, not multiplied by alpha.
     OIIO::ImageSpec wishes;
@@ -117,13 +102,6 @@ class PictureFile {
   }
 
  private:
-  // The bytes that the codec shall see.
-  std::string checked(std::string_view bytes) const {
-    if (format_ == "png") return png_essentials(bytes, name_);
-    if (format_ == "exr") check_exr(bytes, name_);
-    return std::string(bytes);
-  }
-
   const std::string& name_;
   const std::string format_;
   std::string bytes_;

@@ -5,8 +5,9 @@
 
 #include <tiny_obj_loader.h>
 
+#include "boxwood/core/error.h"
 #include "boxwood/io/file_bytes.h"
-#include "boxwood/io/image.h"
+#include "boxwood/io/picture_cache.h"
 
 namespace boxwood::io {
 namespace {
@@ -85,7 +86,7 @@ void load_mtl(const std::filesystem::path& path, SceneDesc& desc, std::map<std::
       const auto [found, is_new] = textures.try_emplace(name);
       if (is_new) {
         try {
-          found->second = desc.add(read_texture(path.parent_path() / name));
+          found->second = desc.add(open_texture(path.parent_path() / name));
         } catch (const FileError& error) {
           desc.warnings.push_back(std::string("a texture is left out: ") + error.what());
         }

@@ -22,6 +22,9 @@ ExrFile read_exr(const std::filesystem::path& path) {
 Texture open_texture(const std::filesystem::path& path) {
   refuse(path.string());
 }
+Texture open_texture(std::span<const std::byte>, const std::string& name) {
+  refuse(name);
+}
 Image read_image(const std::filesystem::path& path) {
   refuse(path.string());
 }

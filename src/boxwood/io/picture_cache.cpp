@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <memory>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagecache.h>
 
-#include "boxwood/io/file_bytes.h"
 #include "boxwood/io/image.h"
+#include "boxwood/io/picture_check.h"
 
 namespace boxwood::io {
 namespace {
@@ -42,10 +44,36 @@ struct TileMemo {
   std::array<Tile, kTiles> tiles;
 };
 
+/// The bytes of a picture file, under a name by which the cache knows them.
+class PictureInMemory {
+ public:
+  PictureInMemory(std::string bytes, const std::string& format)
+      : bytes_(std::move(bytes)), reader_(bytes_.data(), bytes_.size()) {
+    static std::atomic<std::uint64_t> made = 0;
+    name_ = OIIO::ustring("picture in memory " + std::to_string(++made) + "." + format);
+    OIIO::ImageSpec wishes;
+    OIIO::Filesystem::IOProxy* proxy = &reader_;
+    wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    (void)cache().add_file(name_, nullptr, &wishes);
+  }
+  ~PictureInMemory() { cache().invalidate(name_, true); }  // closes it
+  PictureInMemory(const PictureInMemory&) = delete;
+
+  OIIO::ustring name() const { return name_; }
+
+ private:
+  std::string bytes_;
+  OIIO::Filesystem::IOMemReader reader_;
+  OIIO::ustring name_;
+};
+
 class CachedPicture final : public PictureSource {
  public:
-  CachedPicture(const std::filesystem::path& path, int width, int height, const OIIO::ImageSpec& spec)
-      : file_(path.string()),
+  /// `memory` is what stands behind the name, or null when that is a file's.
+  CachedPicture(OIIO::ustring file, std::unique_ptr<PictureInMemory> memory, int width, int height,
+                const OIIO::ImageSpec& spec)
+      : memory_(std::move(memory)),
+        file_(file),
         width_(width),
         height_(height),
         channels_(std::min(spec.nchannels, 4)),
@@ -94,8 +122,8 @@ class CachedPicture final : public PictureSource {
               rows = std::min(kTileSide, std::max(height_ >> level, 1) - y0);
     std::vector<T> values(std::size_t(columns) * rows * channels_);
     // A file that has gone since it was opened is white.
-    if (!cache().get_pixels(OIIO::ustring(file_), 0, level, x0, x0 + columns, y0, y0 + rows, 0, 1, 0,
-                            channels_, type, values.data())) {
+    if (!cache().get_pixels(file_, 0, level, x0, x0 + columns, y0, y0 + rows, 0, 1, 0, channels_, type,
+                            values.data())) {
       (void)cache().geterror();
       return;
     }
@@ -109,28 +137,46 @@ class CachedPicture final : public PictureSource {
       }
   }
 
-  std::string file_;
+  std::unique_ptr<PictureInMemory> memory_;
+  OIIO::ustring file_;
   std::uint64_t serial_;
   int width_, height_, channels_, levels_ = 1;
   bool has_bytes_;
 };
 
-}  // namespace
-
-Texture open_texture(const std::filesystem::path& path) {
-  // Read it whole once, with all checks: what a codec may choke on is met here, and not in the midst of a
-  // picture.
-  Texture texture = read_texture(path);
+/// Lets the picture that `texture` was read from stay in its file.
+Texture left_in_file(Texture texture, OIIO::ustring file, std::unique_ptr<PictureInMemory> memory) {
   OIIO::ImageSpec spec;
-  if (!cache().get_imagespec(OIIO::ustring(path.string()), spec)) {
+  if (!cache().get_imagespec(file, spec)) {
     (void)cache().geterror();
     return texture;  // it stays in memory
   }
-  texture.source = std::make_shared<CachedPicture>(path, texture.width, texture.height, spec);
+  texture.source =
+      std::make_shared<CachedPicture>(file, std::move(memory), texture.width, texture.height, spec);
   texture.texels = {};
   // What the file holds, not what it was encoded as in memory.
   if (spec.format.is_floating_point() || spec["oiio:ColorSpace"].get() == "Linear") texture.is_srgb = false;
   return texture;
+}
+
+}  // namespace
+
+// A picture is read whole once, with all checks: what a codec may choke on is met here, and not in the midst
+// of rendering.
+
+Texture open_texture(const std::filesystem::path& path) {
+  Texture texture = read_texture(path);
+  const OIIO::ustring file(path.string());
+  cache().invalidate(file, true);  // the file may have changed since the cache looked at it
+  return left_in_file(std::move(texture), file, nullptr);
+}
+
+Texture open_texture(std::span<const std::byte> bytes, const std::string& name) {
+  Texture texture = read_texture(bytes, name);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  auto memory = std::make_unique<PictureInMemory>(checked_picture(text, name), picture_format(text, name));
+  const OIIO::ustring file = memory->name();
+  return left_in_file(std::move(texture), file, std::move(memory));
 }
 
 }  // namespace boxwood::io

@@ -4,8 +4,10 @@
 // was not asked for lately and makes the smaller levels that a file does not hold.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <memory>
+#include <span>
+#include <string>
 
 #include "boxwood/scene/description.h"
 
@@ -17,5 +19,8 @@ inline constexpr int kPictureCacheMegabytes = 256;
 /// A texture whose picture stays in its file, which is looked at to see whether it can be read. Throws
 /// FileError when it cannot.
 Texture open_texture(const std::filesystem::path& path);
+
+/// The same for the bytes of a picture file, which are copied; `name` is for messages.
+Texture open_texture(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace boxwood::io

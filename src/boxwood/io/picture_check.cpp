@@ -4,6 +4,7 @@
 #include <array>
 
 #include "boxwood/core/error.h"
+#include "boxwood/io/file_bytes.h"
 
 namespace boxwood::io {
 namespace {
@@ -128,6 +129,26 @@ std::string png_essentials(std::string_view bytes, const std::string& name) {
     }
     at += kFrame + length;
   }
+}
+
+std::string picture_format(std::string_view bytes, const std::string& name) {
+  constexpr struct {
+    std::string_view magic;
+    const char* format;
+  } kFormats[] = {{"\x89PNG", "png"}, {"\xff\xd8\xff", "jpg"}, {"\x76\x2f\x31\x01", "exr"},
+                  {"#?R", "hdr"},     {"GIF8", "gif"},         {"BM", "bmp"}};
+  for (const auto& [magic, format] : kFormats)
+    if (bytes.starts_with(magic)) return format;
+  if (bytes.size() > 12 && bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "webp";
+  const std::string extension = lower_extension(name);
+  return extension.empty() ? "" : extension.substr(1);
+}
+
+std::string checked_picture(std::string_view bytes, const std::string& name) {
+  const std::string format = picture_format(bytes, name);
+  if (format == "png") return png_essentials(bytes, name);
+  if (format == "exr") check_exr(bytes, name);
+  return std::string(bytes);
 }
 
 }  // namespace boxwood::io

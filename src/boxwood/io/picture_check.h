@@ -11,6 +11,13 @@
 
 namespace boxwood::io {
 
+/// The format that OpenImageIO shall try, such as "png": by the first bytes, since a name may be missing or
+/// lie, else by the name's ending. Empty when neither says.
+std::string picture_format(std::string_view bytes, const std::string& name);
+
+/// The bytes of a picture file that its codec shall see, after the checks below. Throws FileError.
+std::string checked_picture(std::string_view bytes, const std::string& name);
+
 /// Throws FileError when a file of so many bytes cannot hold so many numbers.
 void check_picture_size(const std::string& name, std::int64_t width, std::int64_t height,
                         std::int64_t channels, std::size_t file_bytes);
