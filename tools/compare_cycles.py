@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """compare_cycles.py: how long do Boxwood and Blender's Cycles take to the same noise?
 
-    tools/compare_cycles.py build/release/boxwood [--threads 2] [--size 256] [--folder DIR]
+    tools/compare_cycles.py build/release/boxwood [--threads 2] [--size 256] [--lamps 3] [--mesh bunny.obj] [--folder DIR]
 
-Writes a glTF scene (a room with three lamps; plaster, glossy plastic, rough metal), renders it with
-both on the processor, each with several numbers of samples, and holds every picture to the same program's own
-picture of many samples. Both trace paths of up to 64 bounces through a box filter, without clamping, denoising
-or adaptive sampling. The time is that of the processor, all threads together, so that other programs do not
-matter much, and that of a sample, by the slope between two renders, so that neither pays for its start. The error
-falls as 1 / samples; the time to a relative MSE of 0.01 follows from a render near it.
+Writes a glTF scene (a room with three lamps or one; plaster, glossy plastic, rough metal; a mesh in place of the
+plastic ball, where one is named), renders it with both on the processor, each with several numbers of samples, and
+holds every picture to the same program's own picture of many samples. Both trace paths of up to 64 bounces through a
+box filter, without clamping, denoising or adaptive sampling. The time is that of the processor, all threads together,
+so that other programs do not matter much, and that of a sample, by the slope between two renders, so that neither
+pays for its start. The error falls as 1 / samples; the time to a relative MSE of 0.01 follows from a render near it.
 Needs `blender` (Debian: apt-get install blender); tried with 3.4.
 """
 
@@ -148,13 +148,32 @@ class Gltf:
         self.mesh([[c + radius * n for c, n in zip(center, normal)] for normal in normals], normals, triangles,
                   material)
 
+    def obj(self, path, center, height, material):
+        """The triangles of an .obj, as high as that and standing where the center of its foot is."""
+        lines = [line.split() for line in Path(path).read_text().splitlines()]
+        points = [[float(x) for x in words[1:4]] for words in lines if words[:1] == ["v"]]
+        triangles = [[int(word.split("/")[0]) - 1 for word in words[1:4]] for words in lines if words[:1] == ["f"]]
+        low, high = [min(c) for c in zip(*points)], [max(c) for c in zip(*points)]
+        scale = height / (high[1] - low[1])
+        middle = [(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2]
+        points = [[c + scale * (x - m) for x, m, c in zip(point, middle, center)] for point in points]
+        normals = [[0.0, 0.0, 0.0] for _ in points]
+        for triangle in triangles:
+            a, b, c = (points[i] for i in triangle)
+            u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+            cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+            for i in triangle:
+                normals[i] = [n + x for n, x in zip(normals[i], cross)]
+        lengths = [math.sqrt(sum(x * x for x in n)) or 1 for n in normals]
+        self.mesh(points, [[x / length for x in n] for n, length in zip(normals, lengths)], triangles, material)
+
     def write(self, path):
         uri = "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
         self.model["buffers"] = [{"uri": uri, "byteLength": len(self.bytes)}]
         path.write_text(json.dumps(self.model))
 
 
-def write_room(path):
+def write_room(path, lamps, mesh):
     scene = Gltf()
     white, red, green = (scene.material(c) for c in ((0.75, 0.75, 0.75), (0.6, 0.1, 0.1), (0.1, 0.5, 0.15)))
     scene.rectangle([-2, 0, 2], [4, 0, 0], [0, 0, -4], white)  # floor
@@ -162,12 +181,16 @@ def write_room(path):
     scene.rectangle([-2, 0, -2], [4, 0, 0], [0, 3, 0], white)  # back
     scene.rectangle([-2, 0, 2], [0, 0, -4], [0, 3, 0], red)
     scene.rectangle([2, 0, -2], [0, 0, 4], [0, 3, 0], green)
-    for x, size, light in ((-0.6, 0.8, 6.0), (1.3, 0.2, 40.0), (-1.6, 0.1, 120.0)):
+    for x, size, light in ((-0.6, 0.8, 6.0), (1.3, 0.2, 40.0), (-1.6, 0.1, 120.0))[:lamps]:
         lamp = scene.material((0, 0, 0), light=light)
         scene.rectangle([x, 2.999, -0.4], [size, 0, 0], [0, 0, size], lamp)
     scene.sphere([-1.1, 0.6, -0.9], 0.6, scene.material((0.9, 0.7, 0.4), 0.4, 1))
     scene.sphere([1.1, 0.6, -0.8], 0.6, scene.material((0.95, 0.95, 0.95), 0.3, 1))
-    scene.sphere([0, 0.45, 0.4], 0.45, scene.material((0.1, 0.25, 0.6), 0.2))
+    plastic = scene.material((0.1, 0.25, 0.6), 0.2)
+    if mesh:
+        scene.obj(mesh, [0, 0, 0.4], 1.2, plastic)
+    else:
+        scene.sphere([0, 0.45, 0.4], 0.45, plastic)
     scene.model["cameras"].append(
         {"type": "perspective", "perspective": {"yfov": 0.75, "aspectRatio": 1, "znear": 0.1}})
     scene.node({"camera": 0, "translation": [0, 1.4, 5.4]})
@@ -208,6 +231,8 @@ def main():
     parser.add_argument("--blender", default="blender")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--size", type=int, default=256)
+    parser.add_argument("--lamps", type=int, default=3, choices=(1, 3))
+    parser.add_argument("--mesh", help="an .obj of triangles, to stand in the room")
     parser.add_argument("--samples", type=int, default=128, help="of the render that is measured")
     parser.add_argument("--reference", type=int, default=2048, help="samples of the converged pictures")
     parser.add_argument("--folder", default="cycles-comparison", help="where the pictures go")
@@ -215,7 +240,7 @@ def main():
     folder = Path(options.folder)
     folder.mkdir(parents=True, exist_ok=True)
     scene = folder / "room.gltf"
-    write_room(scene)
+    write_room(scene, options.lamps, options.mesh)
 
     print(f"| program | CPU ms a sample of all pixels | relative MSE of {options.samples} samples | CPU seconds to {TARGET} |")
     print("|---|---|---|---|")
