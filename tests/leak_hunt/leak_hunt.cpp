@@ -1,6 +1,8 @@
 // leak_hunt: how many rays slip through closed meshes?
 //
-//   leak_hunt [RAYS [EMBREE_RAYS]]     1e7 rays by default, of which 1e7 at most are asked of Embree too
+//   leak_hunt [RAYS [EMBREE_RAYS [compact]]]     1e7 rays by default, of which 1e7 at most are asked of
+//   Embree too;
+//                                                in the compact layout where that word stands
 //
 // The rays of support/leak_rays.h on all threads: each by a batch for the closest hit, every tenth by all
 // hits, whose crossings must add up. Embree, where it is installed, gets the first of the very same rays, one
@@ -86,16 +88,17 @@ class Peer {
 #endif
 
 /// Shoots `rays` rays at the body there; the first `embree_rays` by Embree too.
-Count hunt(const simd::Kernels& kernels, const test::Body& body, Vec3 offset, std::size_t rays,
-           std::size_t embree_rays) {
+Count hunt(const simd::Kernels& kernels, simd::Layout layout, const test::Body& body, Vec3 offset,
+           std::size_t rays, std::size_t embree_rays) {
   const test::Mesh mesh = test::placed(body.mesh, 1, offset);
   const std::vector<Triangle> triangles = test::triangles(mesh);
   const Bvh bvh = build(boxes(triangles));
   const Box3 bounds = bvh.bounds();
-  const simd::TriangleTree tree =
-      kernels.width == 4
-          ? simd::TriangleTree(collapse<4>(bvh, default_executor()), triangles, {}, default_executor())
-          : simd::TriangleTree(collapse<8>(bvh, default_executor()), triangles, {}, default_executor());
+  const simd::TriangleTree tree = kernels.width == 4
+                                      ? simd::TriangleTree(collapse<4>(bvh, default_executor()), triangles,
+                                                           {}, default_executor(), layout)
+                                      : simd::TriangleTree(collapse<8>(bvh, default_executor()), triangles,
+                                                           {}, default_executor(), layout);
 #ifdef BOXWOOD_HAS_EMBREE
   const Peer fast(mesh, false), robust(mesh, true);
 #endif
@@ -162,7 +165,7 @@ void print_row(const std::string& name, const Count& c) {
               c.miscounted, c.embree_rays, c.embree_leaks, c.robust_leaks);
 }
 
-int run(double rays, double embree_rays) {
+int run(double rays, double embree_rays, simd::Layout layout) {
   const simd::Kernels* kernels = simd::kernels();
   if (kernels == nullptr || !(rays >= 1) || !(embree_rays >= 0)) {
     std::fprintf(stderr,
@@ -178,7 +181,7 @@ int run(double rays, double embree_rays) {
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (std::size_t o = 0; o < kOffsetCount; ++o) {
-      const Count count = hunt(*kernels, bodies[b], test::kOffsets[o], std::size_t(rays * share),
+      const Count count = hunt(*kernels, layout, bodies[b], test::kOffsets[o], std::size_t(rays * share),
                                std::size_t(embree_rays * share));
       by_body[b] += count;
       by_offset[o] += count;
@@ -204,5 +207,10 @@ int run(double rays, double embree_rays) {
 
 int main(int argc, char** argv) {
   const double rays = argc > 1 ? std::atof(argv[1]) : 1e7;
-  return boxwood::run(rays, argc > 2 ? std::atof(argv[2]) : rays < 1e7 ? rays : 1e7);
+  const bool is_compact = argc > 3 && std::string(argv[3]) == "compact";
+  return boxwood::run(rays,
+                      argc > 2     ? std::atof(argv[2])
+                      : rays < 1e7 ? rays
+                                   : 1e7,
+                      is_compact ? boxwood::simd::Layout::compact : boxwood::simd::Layout::full);
 }
