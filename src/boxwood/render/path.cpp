@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -58,19 +59,27 @@ struct Path {
   Vertex last;
   float cone_width = 0, cone_angle = 0;
   int bounce = 0, steps = 0;
-  std::uint32_t index = 0;  // of the sample
 };
+
+/// Has the processor fetch a path that is soon to be looked at.
+void prefetch_path([[maybe_unused]] const Path& path) {
+#if defined(__GNUC__)
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof path; at += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&path) + at, 1);
+#endif
+}
 
 /// Light that a path gets if nothing is in the way.
 struct Pending {
-  std::uint32_t path;  // position among the paths on their way
+  std::uint32_t path;  // position among the paths
   Vec3 light;
 };
 
 /// The hits of a block on their way through a step: where light may come from, and go on to.
 struct Step {
   int count = 0, plain_count = 0;
-  std::array<std::uint32_t, kBlock> paths;  // positions among the paths on their way
+  std::array<std::uint32_t, kBlock> paths;  // positions among the paths
   std::array<Surface, kBlock> surfaces;
   std::array<const Material*, kBlock> materials;
   std::array<bool, kBlock> is_plain;
@@ -116,31 +125,36 @@ class PathTracer final : public Integrator {
     for (std::size_t i = 0; i < camera_rays.size(); ++i) {
       Path path{camera_rays[i], samplers[i]};
       path.cone_angle = pixel_angle_;
-      path.index = static_cast<std::uint32_t>(i);
       paths.push_back(path);
       is_counted[i] = true;
     }
 
     Batch batch(camera_rays.size());
+    std::vector<std::uint32_t>& on_their_way = batch.on_their_way;
     bool is_first = true;
-    while (!paths.empty()) {
+    while (!on_their_way.empty()) {
       // Find what each path hits.
-      batch.rays.clear();
-      for (const Path& path : paths) batch.rays.push_back(path.ray);
-      scene_.closest_hit(batch.rays, std::span(batch.hits).first(paths.size()), &serial_executor());
-      (is_first ? rays.camera : rays.bounce) += paths.size();
+      const std::size_t count = on_their_way.size();
+      for (std::size_t i = 0; i < count; ++i) batch.rays[i] = paths[on_their_way[i]].ray;
+      scene_.closest_hit(std::span(batch.rays).first(count), std::span(batch.hits).first(count),
+                         &serial_executor());
+      (is_first ? rays.camera : rays.bounce) += count;
       is_first = false;
 
-      // Let each go on from there, material by material; those at their end leave a gap.
+      // Let each go on from there, material by material.
       batch.pending.clear();
       batch.ways.clear();
-      sort_by_material(batch, paths.size());
-      for (std::size_t k = 0; k < paths.size(); ++k) {
-        if (k + 2 * kAhead < paths.size()) prefetch_triangle(scene_, batch.hits[batch.order[k + 2 * kAhead]]);
-        if (k + kAhead < paths.size()) prefetch_corners(scene_, batch.hits[batch.order[k + kAhead]]);
-        const std::uint32_t i = batch.order[k];
-        batch.goes_on[i] = arrive(paths[i], batch.hits[i], i, batch.step);
-        if (batch.step.count == kBlock || k + 1 == paths.size()) leave(paths, batch);
+      sort_by_material(batch, count);
+      for (std::size_t k = 0; k < count; ++k) {
+        if (k + 2 * kAhead < count) prefetch_triangle(scene_, batch.hits[batch.order[k + 2 * kAhead]]);
+        if (k + kAhead < count) {
+          const std::uint32_t ahead = batch.order[k + kAhead];
+          prefetch_corners(scene_, batch.hits[ahead]);
+          prefetch_path(paths[on_their_way[ahead]]);
+        }
+        const std::uint32_t i = batch.order[k], path = on_their_way[i];
+        batch.goes_on[path] = arrive(paths[path], batch.hits[i], path, batch.step);
+        if (batch.step.count == kBlock || k + 1 == count) leave(paths, batch);
       }
 
       // Find how much of the lights that they asked for is in sight.
@@ -149,31 +163,26 @@ class PathTracer final : public Integrator {
       for (std::size_t i = 0; i < batch.pending.size(); ++i)
         paths[batch.pending[i].path].gathered += batch.pending[i].light * batch.transmittances[i];
 
-      // Hand in those that are done, and close the gaps.
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (batch.goes_on[i])
-          paths[kept++] = paths[i];
-        else
-          store(out.subspan(3 * std::size_t(paths[i].index), 3), paths[i].gathered);
-      }
-      paths.erase(paths.begin() + static_cast<std::ptrdiff_t>(kept), paths.end());
+      std::erase_if(on_their_way, [&](std::uint32_t path) { return batch.goes_on[path] == 0; });
     }
+    for (std::size_t i = 0; i < paths.size(); ++i) store(out.subspan(3 * i, 3), paths[i].gathered);
   }
 
  private:
   /// The memory of one step of all paths.
   struct Batch {
-    explicit Batch(std::size_t size) : hits(size), order(size), goes_on(size) {
-      rays.reserve(size);
+    explicit Batch(std::size_t size)
+        : on_their_way(size), rays(size), hits(size), order(size), goes_on(size) {
+      std::iota(on_their_way.begin(), on_their_way.end(), 0u);
       pending.reserve(size);
     }
-    std::vector<Ray> rays;
-    std::vector<Hit> hits;
-    std::vector<std::uint32_t> order;  // in which hits are looked at
-    std::vector<char> goes_on;
-    std::vector<Pending> pending;    // one for each of `rays` towards lights,
-    std::vector<Shadows::Way> ways;  // and what it starts in
+    std::vector<std::uint32_t> on_their_way;  // paths,
+    std::vector<Ray> rays;                    // their rays,
+    std::vector<Hit> hits;                    // what these hit,
+    std::vector<std::uint32_t> order;         // and in which order hits are looked at
+    std::vector<char> goes_on;                // by path
+    std::vector<Pending> pending;             // one for each ray towards a light,
+    std::vector<Shadows::Way> ways;           // and what it starts in
     std::vector<Vec3> transmittances;
     Step step;
   };
