@@ -51,6 +51,33 @@ TEST_F(Gltf, MeshesOfSeveralNodesAreReadOnceAndPlacedByTheTransformsAboveThem) {
   EXPECT_EQ(scene(source).instances.size(), 3u);
 }
 
+TEST_F(Gltf, AMeshInOnePlaceIsPutThere) {
+  Source source;
+  append<float>(source.buffer, {0, 0, 1, 0, 0, 1, 0.6f, 0, 0.8f});
+  source.parts["bufferViews"] =
+      R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3},{"buffer":0,"byteOffset":40,"byteLength":36}])";
+  source.parts["accessors"].replace(source.parts["accessors"].rfind(']'), 1,
+                                    R"(,{"bufferView":2,"componentType":5126,"count":3,"type":"VEC3"}])");
+  source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"NORMAL":2},"indices":1}]}])";
+  const auto placed = [&](const std::string& node) {
+    source.parts["nodes"] = R"([{"mesh":0,)" + node + "}]";
+    return scene(source);
+  };
+
+  const SceneDesc moved = placed(R"("translation":[10,20,30],"scale":[1,1,2])");
+  EXPECT_TRUE(moved.instances.at(0).world_from_object == Affine3::identity());
+  EXPECT_EQ(mesh(moved).positions, (std::vector<Vec3>{{10, 20, 30}, {11, 20, 30}, {10, 21, 30}}));
+  expect_near(mesh(moved).normals[1], {0, 0, 1});
+  expect_near(mesh(moved).normals[2], normalize(Vec3{0.6f, 0, 0.4f}));
+
+  // Front sides would be back sides; floats are too coarse.
+  for (const std::string node : {R"("scale":[-1,1,1])", R"("translation":[1e6,0,0])"}) {
+    const SceneDesc kept = placed(node);
+    EXPECT_FALSE(kept.instances.at(0).world_from_object == Affine3::identity());
+    EXPECT_EQ(mesh(kept).positions[1], (Vec3{1, 0, 0}));
+  }
+}
+
 TEST_F(Gltf, ReadsStripsFansAndMissingIndices) {
   Source source;
   source.buffer.clear();

@@ -1,8 +1,9 @@
 // gltf.cpp: how does a glTF or GLB file, version 2.0, become a scene?
 //
 // The nodes of the default scene form trees of transforms; each place where a mesh hangs becomes one Instance
-// per primitive of the mesh, and the primitive one Geometry however many nodes share it. See the glTF 2.0
-// specification, sections 3.5 and 3.7.
+// per primitive of the mesh, and the primitive one Geometry however many nodes share it. A mesh that hangs in
+// one place is put there: triangles of the world are asked faster than those below a transform. See the glTF
+// 2.0 specification, sections 3.5 and 3.7.
 
 #include <cmath>
 #include <stdexcept>
@@ -60,6 +61,7 @@ class Builder {
     if (!model_.animations.empty())
       warn(desc_.warnings, file_, "",
            "animations are not supported; all stands as in the file's pose at rest");
+    put_in_place();
     return std::move(desc_);
   }
 
@@ -147,6 +149,43 @@ class Builder {
           ids->push_back(desc_.add(std::move(*geometry)));
     }
     for (const GeometryId id : *ids) desc_.add(Instance{id, world_from_node, {}});
+  }
+
+  /// Moves meshes that have one instance to where it shows them.
+  void put_in_place() {
+    std::vector<int> use_count(desc_.geometries.size());
+    for (const Instance& instance : desc_.instances) ++use_count[instance.geometry.value];
+    for (Instance& instance : desc_.instances) {
+      auto* mesh = std::get_if<TriangleMesh>(&desc_.geometries[instance.geometry.value].shapes);
+      if (!mesh || use_count[instance.geometry.value] != 1 ||
+          instance.world_from_object == Affine3::identity())
+        continue;
+      if (std::optional<TriangleMesh> placed = placed_mesh(*mesh, instance.world_from_object)) {
+        *mesh = std::move(*placed);
+        instance.world_from_object = Affine3::identity();
+      }
+    }
+  }
+
+  /// The mesh in the world. None where that is another mesh: mirrored, so that front sides are back sides, or
+  /// so far away that floats are too coarse for it there.
+  static std::optional<TriangleMesh> placed_mesh(const TriangleMesh& mesh, const Affine3& world_from_object) {
+    constexpr float kFarthest = 1024;  // in extents of the mesh: rounds positions by less than 1e-4 of it
+    const Affine3& m = world_from_object;
+    if (!(determinant(m) > 0)) return {};
+    TriangleMesh placed = mesh;
+    Box3 box;
+    for (Vec3& position : placed.positions) {
+      position = m.point(position);
+      if (!is_finite(position)) return {};
+      box.extend(position);
+    }
+    const float reach = max(max_component(abs(box.lower)), max_component(abs(box.upper)));
+    if (!(reach <= kFarthest * max_component(box.extent()))) return {};
+    const Affine3 object_from_world = inverse(m);
+    for (Vec3& normal : placed.normals)
+      if (const Vec3 n = transform_normal(object_from_world, normal); length(n) > 0) normal = normalize(n);
+    return placed;
   }
 
   /// The first camera of the scene becomes ours.
