@@ -44,7 +44,7 @@ struct BsdfValue {
 inline float shadow_softening(float alignment, float geometric_cosine, float shading_cosine) {
   const float g = max(0.0f, geometric_cosine) / (shading_cosine * max(alignment, 1e-4f));
   const float softened = g * (1 + g * (1 - g));
-  return (alignment > 0.99999f) | (g >= 1) ? 1.0f : softened;
+  return ((alignment > 0.99999f) | (g >= 1)) ? 1.0f : softened;
 }
 
 class Bsdf {

@@ -10,8 +10,8 @@ inline void sample_flat_block(const FlatLight* __restrict lights, const Integers
     // The square folded onto the triangle, as by uniform_triangle() (warp.h).
     const float folded = light.is_triangle * 0.5f * min(u.x[i], u.y[i]);
     const bool is_upper = u.y[i] > u.x[i];
-    const float along_x = is_upper & (light.is_triangle > 0) ? folded : u.x[i] - folded;
-    const float along_y = is_upper | (light.is_triangle == 0) ? u.y[i] - folded : folded;
+    const float along_x = (is_upper & (light.is_triangle > 0)) ? folded : u.x[i] - folded;
+    const float along_y = (is_upper | (light.is_triangle == 0)) ? u.y[i] - folded : folded;
     const Vec3 position = light.corner + light.x * along_x + light.y * along_y;
 
     const Vec3 to_light = position - from.position[i];
@@ -22,7 +22,8 @@ inline void sample_flat_block(const FlatLight* __restrict lights, const Integers
     const bool is_lit = (cosine > 0) | (light.is_two_sided > 0);
     // Anything that is not finite makes this sum so.
     const float reach = std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z);
-    out.pdf[i] = is_lit & (pdf > 0) & (pdf < kInfinity) & (reach < kInfinity) ? pdf : 0.0f;
+    const bool is_usable = is_lit & (pdf > 0) & (pdf < kInfinity) & (reach < kInfinity);
+    out.pdf[i] = is_usable ? pdf : 0.0f;
 
     // From where a ray leaves the surface to just before the light itself, where a ray from there would
     // start.

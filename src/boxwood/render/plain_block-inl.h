@@ -122,9 +122,10 @@ inline void sample_block(const PlainPoints& __restrict p, const Floats& __restri
     const Vec3 half = Ggx{p.alpha[i]}.sample_visible_normal(outgoing, u[i]);
     const Vec3 mirrored = half * (2 * dot(outgoing, half)) - outgoing;
     const Vec3 spread = cosine_hemisphere(u[i]);
-    const bool is_mirrored = (choices[i] < p.specular_chance[i]) | !(p.diffuse_chance[i] > 0);
-    local.set(i, {is_mirrored ? mirrored.x : spread.x, is_mirrored ? mirrored.y : spread.y,
-                  is_mirrored ? mirrored.z : spread.z});
+    const bool is_past_mirror = choices[i] >= p.specular_chance[i], has_base = p.diffuse_chance[i] > 0;
+    const bool is_spread = is_past_mirror & has_base;
+    local.set(i, {is_spread ? spread.x : mirrored.x, is_spread ? spread.y : mirrored.y,
+                  is_spread ? spread.z : mirrored.z});
   }
   boundary_albedos(p, local.z, albedos);
   for (int i = 0; i < kBlock; ++i) {
