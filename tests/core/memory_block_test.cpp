@@ -47,7 +47,7 @@ TEST(Workspace, BlocksDoNotOverlap) {
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 TEST(Workspace, HandsOutWhatWasLetGo) {
-  const Workspace workspace(16 * kMegabyte);
+  const Workspace workspace(64 * kMegabyte);
   RawArray<int> first(kMegabyte);
   const RawArray<int> second(kMegabyte);
   const int* const place = first.data();
@@ -57,9 +57,9 @@ TEST(Workspace, HandsOutWhatWasLetGo) {
 
   // One inside has a place of its own, until it ends.
   {
-    const Workspace inner(16 * kMegabyte);
+    const Workspace inner(64 * kMegabyte);
     const RawArray<char> other(kMegabyte);
-    EXPECT_TRUE(other.data() < third.data() - 16 * kMegabyte || other.data() > third.data() + 16 * kMegabyte);
+    EXPECT_TRUE(other.data() < third.data() - 64 * kMegabyte || other.data() > third.data() + 64 * kMegabyte);
   }
   const RawArray<char> fourth(kMegabyte / 2);
   EXPECT_EQ(third.data() + 3 * kMegabyte, fourth.data());
@@ -69,7 +69,7 @@ TEST(Workspace, HandsOutWhatWasLetGo) {
 TEST(Workspace, BlocksOutliveIt) {
   MemoryBlock kept, dropped;
   {
-    const Workspace workspace(16 * kMegabyte);
+    const Workspace workspace(64 * kMegabyte);
     dropped = MemoryBlock(3 * kMegabyte, 64);
     kept = MemoryBlock(3 * kMegabyte, 64);
     std::memset(kept.data(), 7, kept.size());

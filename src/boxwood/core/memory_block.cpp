@@ -22,6 +22,9 @@ constexpr std::size_t kHugePage = std::size_t(2) << 20;
 /// Smaller blocks are left to the allocator, which keeps such memory by itself.
 constexpr std::size_t kSmallest = std::size_t(1) << 16;
 
+/// What fits into less the allocator keeps from one piece of work to the next.
+constexpr std::size_t kSmallestRoom = std::size_t(1) << 26;
+
 constexpr std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
@@ -145,7 +148,7 @@ MemoryBlock::~MemoryBlock() {
 }
 
 Workspace::Workspace(std::size_t bytes) : before_(current_room) {
-  if (bytes >= kHugePage) room_ = std::make_shared<MemoryBlock::Room>(bytes);
+  if (bytes >= kSmallestRoom) room_ = std::make_shared<MemoryBlock::Room>(bytes);
   current_room = room_;
 }
 
