@@ -29,7 +29,6 @@ class Workshop {
  public:
   Workshop(const RawBvh& bvh, Executor& executor)
       : nodes_(bvh.nodes.data(), bvh.nodes.size()),
-        prim_ids_(bvh.prim_ids.data(), bvh.prim_ids.size()),
         parent_(bvh.nodes.size()),
         scale_(reach_of(bvh.nodes[0].box)),
         executor_(executor) {
@@ -78,39 +77,103 @@ class Workshop {
       if (!nodes_[i].is_leaf()) fit(i);
   }
 
-  /// In depth-first order; empty where that would be deeper than `max_depth`.
-  RawBvh finish(int max_depth) const {
-    RawBvh out{RawArray<BvhNode>(nodes_.size()), RawArray<PrimId>(prim_ids_.size())};
-    std::uint32_t next_node = 1, next_prim = 0;
+  /// The nodes in depth-first order; none where that would be deeper than `max_depth`.
+  RawArray<BvhNode> finish(int max_depth) const {
+    // Below the top, subtrees are counted and written at the same time; one thread needs no counts.
+    const std::size_t most = executor_.concurrency() > 1 ? 512 : 1;
+    std::vector<Subtree> subtrees{{0, 0}};
+    for (std::size_t next = 0; next < subtrees.size() && subtrees.size() < most; ++next) {
+      Subtree& subtree = subtrees[next];
+      const BvhNode& node = nodes_[subtree.root];
+      if (node.is_leaf()) continue;
+      subtree.left = static_cast<std::uint32_t>(subtrees.size());
+      const int depth = subtree.depth + 1;
+      subtrees.push_back({node.first_index, depth});
+      subtrees.push_back({node.first_index + 1, depth});
+    }
+    if (most > 1)
+      parallel_for(executor_, 0, subtrees.size(), 1, [&](std::size_t i) {
+        if (subtrees[i].left == kNone) subtrees[i].below = count_below(subtrees[i].root);
+      });
+    for (std::size_t i = subtrees.size(); i-- > 0;) {
+      Subtree& subtree = subtrees[i];
+      if (subtree.left == kNone) continue;
+      const Subtree &left = subtrees[subtree.left], &right = subtrees[subtree.left + 1];
+      subtree.below = 2 + left.below + right.below;
+    }
+
+    // Deal out the places, from the root down.
+    RawArray<BvhNode> out(nodes_.size());
+    subtrees[0].base = 1;
+    for (const Subtree& subtree : subtrees) {
+      out[subtree.place] = nodes_[subtree.root];
+      if (subtree.left == kNone) continue;
+      out[subtree.place].first_index = subtree.base;
+      Subtree &left = subtrees[subtree.left], &right = subtrees[subtree.left + 1];
+      left.place = subtree.base;
+      right.place = subtree.base + 1;
+      left.base = subtree.base + 2;
+      right.base = left.base + left.below;
+    }
+    parallel_for(executor_, 0, subtrees.size(), 1, [&](std::size_t i) {
+      if (subtrees[i].left == kNone) subtrees[i].deepest = write(subtrees[i], out);
+    });
+    const bool is_too_deep = std::any_of(subtrees.begin(), subtrees.end(),
+                                         [&](const Subtree& subtree) { return subtree.deepest > max_depth; });
+    return is_too_deep ? RawArray<BvhNode>() : std::move(out);
+  }
+
+ private:
+  /// A part of the tree, and where it goes: its root to `place`, all below it from `base` on.
+  struct Subtree {
+    std::uint32_t root;
+    int depth;                   ///< Of its root.
+    std::uint32_t left = kNone;  ///< Where its children's subtrees are listed; kNone: they are not.
+    std::uint32_t below = 0;     ///< How many.
+    int deepest = 0;             ///< Known when it is written.
+    std::uint32_t place = 0, base = 0;
+  };
+
+  std::uint32_t count_below(std::uint32_t root) const {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> waiting{root};
+    while (!waiting.empty()) {
+      const BvhNode& node = nodes_[waiting.back()];
+      waiting.pop_back();
+      if (node.is_leaf()) continue;
+      count += 2;
+      waiting.push_back(node.first_index);
+      waiting.push_back(node.first_index + 1);
+    }
+    return count;
+  }
+  /// Returns the depth of the deepest node.
+  int write(const Subtree& subtree, const RawArray<BvhNode>& out) const {
     struct Place {
       std::uint32_t index;
       int depth;
     };
-    std::vector<Place> waiting{{0, 0}};
-    out.nodes[0] = nodes_[0];
+    std::vector<Place> waiting{{subtree.place, subtree.depth}};
+    std::uint32_t next = subtree.base;
+    int deepest = 0;
     while (!waiting.empty()) {
       const auto [index, depth] = waiting.back();
       waiting.pop_back();
-      if (depth > max_depth) return {};
-      BvhNode& node = out.nodes[index];
-      if (node.is_leaf()) {
-        std::copy_n(&prim_ids_[node.first_index], node.count, &out.prim_ids[next_prim]);
-        node.first_index = next_prim;
-        next_prim += node.count;
-      } else {
-        // Children are noted as they were, and corrected when their turn comes.
-        const BvhNode* children = &nodes_[node.first_index];
-        node.first_index = next_node;
-        std::copy_n(children, 2, &out.nodes[next_node]);
-        waiting.push_back({next_node + 1, depth + 1});
-        waiting.push_back({next_node, depth + 1});
-        next_node += 2;
-      }
+      deepest = std::max(deepest, depth);
+      BvhNode& node = out[index];
+      if (node.is_leaf()) continue;
+      // Children are noted as they were, and corrected when their turn comes.
+      const BvhNode* children = &nodes_[node.first_index];
+      node.first_index = next;
+      out[next] = children[0];
+      out[next + 1] = children[1];
+      waiting.push_back({next + 1, depth + 1});
+      waiting.push_back({next, depth + 1});
+      next += 2;
     }
-    return out;
+    return deepest;
   }
 
- private:
   static Reach reach_of(const Box3& box) {
     return {{Lanes::Register{-box.lower.x, -box.lower.y, -box.lower.z, 0}},
             {Lanes::Register{box.upper.x, box.upper.y, box.upper.z, 0}}};
@@ -224,7 +287,6 @@ class Workshop {
   }
 
   const std::span<BvhNode> nodes_;
-  const std::span<const PrimId> prim_ids_;
   RawArray<std::uint32_t> parent_;
   const Scale scale_;
   Executor& executor_;
@@ -246,9 +308,10 @@ RawBvh reinsert(RawBvh bvh, const Reinsertion& how, Executor& executor, Meter& m
     if (now == 0) break;
   }
   if (moved == 0) return bvh;
-  RawBvh better = workshop.finish(how.max_depth);
-  if (better.nodes.size() > 0) return better;
-  workshop.undo();
+  if (RawArray<BvhNode> nodes = workshop.finish(how.max_depth); nodes.size() > 0)
+    bvh.nodes = std::move(nodes);
+  else
+    workshop.undo();
   return bvh;
 }
 

@@ -28,9 +28,9 @@ inline std::size_t reinsertion_work(std::size_t primitives) {
   return primitives / 16;
 }
 
-/// A tree over the same leaves, in depth-first order; expects one in that order. Cost: for each subtree that
-/// is tried, a search that ends where nothing is to be gained, or after a few hundred nodes. Throws
-/// Cancelled.
+/// A tree over the same leaves, its nodes in depth-first order; expects one in that order. Cost: for each
+/// subtree that is tried, a search that ends where nothing is to be gained, or after a few hundred nodes.
+/// Throws Cancelled.
 RawBvh reinsert(RawBvh bvh, const Reinsertion& how, Executor& executor, Meter& meter);
 
 }  // namespace boxwood
