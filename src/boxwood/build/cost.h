@@ -16,7 +16,7 @@
 
 #include <cstdint>
 
-#include "boxwood/build/lanes.h"
+#include "boxwood/core/lanes.h"
 
 namespace boxwood {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "boxwood/build/box_source.h"
-#include "boxwood/build/lanes.h"
+#include "boxwood/core/lanes.h"
 #include "boxwood/core/box.h"
 #include "boxwood/core/id.h"
 #include "boxwood/core/parallel.h"

@@ -21,6 +21,7 @@ class AllHitsQuery {
       : ray_(ray), shapes_(shapes), hits_(hits) {}
 
   float bound(const Box3& box) const { return ray_.bound(box); }
+  BOXWOOD_ALWAYS_INLINE auto parts(const Box3& a, const Box3& b) const { return ray_.parts(a, b, limit()); }
   float limit() const { return ray_.t_max; }
   void visit(PrimId id) {
     struct Sink {

@@ -18,6 +18,7 @@ class AnyHitQuery {
       : ray_(ray), shapes_(shapes), limit_(ray.t_max) {}
 
   float bound(const Box3& box) const { return ray_.bound(box); }
+  BOXWOOD_ALWAYS_INLINE auto parts(const Box3& a, const Box3& b) const { return ray_.parts(a, b, limit()); }
   float limit() const { return limit_; }
   void visit(PrimId id) {
     if (!found()) intersect_gated(ray_, shapes_[id.value], *this);

@@ -16,6 +16,7 @@ class ClosestHitQuery {
       : ray_(ray), shapes_(shapes), limit_(ray.t_max) {}
 
   float bound(const Box3& box) const { return ray_.bound(box); }
+  BOXWOOD_ALWAYS_INLINE auto parts(const Box3& a, const Box3& b) const { return ray_.parts(a, b, limit()); }
   float limit() const { return limit_; }
   void visit(PrimId id) {
     struct Sink {

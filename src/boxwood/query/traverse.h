@@ -6,8 +6,9 @@
 #pragma once
 
 #include <concepts>
-#include <utility>
+#include <limits>
 
+#include "boxwood/core/prepared_ray.h"
 #include "boxwood/tree/bvh.h"
 
 namespace boxwood {
@@ -34,6 +35,39 @@ struct NoStatistics {
   void count_shapes(std::uint32_t) {}
 };
 
+/// A query that knows the bounds of two boxes sooner together, as a ray does: what it would say of each, and
+/// what they must not exceed to matter.
+template <class Q>
+concept QueryOfPairs = Query<Q> && requires(Q query, const Box3& box) {
+  { query.parts(box, box) } -> std::same_as<PreparedRay::TwoIntervals>;
+};
+
+namespace detail {
+
+inline void prefetch([[maybe_unused]] const void* p) {
+#if defined(__GNUC__)
+  __builtin_prefetch(p);
+#endif
+}
+
+/// The bounds of two boxes; one matters that is no larger than its end.
+struct TwoBounds {
+  float left, right, left_end, right_end;
+};
+template <Query Q>
+BOXWOOD_ALWAYS_INLINE TwoBounds two_bounds(Q& query, const Box3& left, const Box3& right) {
+  if constexpr (QueryOfPairs<Q>) {
+    const PreparedRay::TwoIntervals in = query.parts(left, right);
+    return {in.entry.v[0], in.entry.v[1], in.exit.v[0], in.exit.v[1]};
+  } else {
+    // An infinite bound means "skip", whatever the limit is.
+    const float end = min(query.limit(), std::numeric_limits<float>::max());
+    return {query.bound(left), query.bound(right), end, end};
+  }
+}
+
+}  // namespace detail
+
 /// Shows every primitive that may matter to `query`.
 /// Allocates nothing; any number of threads may walk one tree.
 template <Query Q, class Statistics>
@@ -46,10 +80,9 @@ void traverse(const Bvh& bvh, Q& query, Statistics& statistics) {
   Postponed stack[kMaxDepth + 1];
   int waiting = 0;
 
-  // An infinite bound means "skip", whatever the limit is.
-  const auto matters = [&query](float bound) { return bound < kInfinity && bound <= query.limit(); };
   statistics.count_boxes(1);
-  if (!matters(query.bound(bvh.nodes[0].box))) return;
+  const float bound = query.bound(bvh.nodes[0].box);
+  if (!(bound < kInfinity && bound <= query.limit())) return;
   std::uint32_t node_index = 0;
 
   while (true) {
@@ -59,14 +92,29 @@ void traverse(const Bvh& bvh, Q& query, Statistics& statistics) {
       statistics.count_shapes(node.count);
       for (std::uint32_t i = 0; i < node.count; ++i) query.visit(bvh.prim_ids[node.first_index + i]);
     } else {
-      // Go to the nearer child; remember the farther one.
+      // Ask for what lies below both children: whether a branch is foreseen or not, it is on its way.
       statistics.count_boxes(2);
-      Postponed near{node.first_index, query.bound(bvh.nodes[node.first_index].box)};
-      Postponed far{node.first_index + 1, query.bound(bvh.nodes[node.first_index + 1].box)};
-      if (far.bound < near.bound) std::swap(near, far);
-      if (matters(far.bound)) stack[waiting++] = far;
-      if (matters(near.bound)) {
-        node_index = near.node_index;
+      const std::uint32_t left = node.first_index, right = left + 1;
+      const BvhNode* const children = &bvh.nodes[left];
+      detail::prefetch(bvh.nodes.data() + children[0].first_index);
+      detail::prefetch(bvh.nodes.data() + children[1].first_index);
+
+      // Go to the nearer child; remember the farther one.
+      const detail::TwoBounds bounds = detail::two_bounds(query, children[0].box, children[1].box);
+      if (bounds.left <= bounds.left_end) {
+        if (!(bounds.right <= bounds.right_end)) {
+          node_index = left;
+        } else if (bounds.right < bounds.left) {
+          stack[waiting++] = {left, bounds.left};
+          node_index = right;
+        } else {
+          stack[waiting++] = {right, bounds.right};
+          node_index = left;
+        }
+        continue;
+      }
+      if (bounds.right <= bounds.right_end) {
+        node_index = right;
         continue;
       }
     }

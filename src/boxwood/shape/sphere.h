@@ -46,7 +46,9 @@ struct Sphere {
     // The foot of the perpendicular from the center to the line.
     const double s = b / a;
     const double lx = fx - s * d.x, ly = fy - s * d.y, lz = fz - s * d.z;
-    const double discriminant = (double(radius) * radius - (lx * lx + ly * ly + lz * lz)) / a;
+    const double inside = double(radius) * radius - (lx * lx + ly * ly + lz * lz);
+    if (!(inside > 0)) return false;  // most lines end here, without another division
+    const double discriminant = inside / a;
     if (!(discriminant > 0)) return false;
 
     // The root farther from 0 first, the other from their product: no digits are lost.
