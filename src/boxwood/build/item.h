@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "boxwood/build/box_source.h"
-#include "boxwood/core/lanes.h"
 #include "boxwood/core/box.h"
 #include "boxwood/core/id.h"
+#include "boxwood/core/lanes.h"
 #include "boxwood/core/parallel.h"
 #include "boxwood/core/raw_array.h"
 

@@ -9,7 +9,7 @@ namespace boxwood {
 // docs/performance-log.md says more.
 //
 //     preset      time                        visits
-//     fast        0.8 / 0.8 / 0.8 / 0.6       9.7 / 9.4 / 25.1 / 9.2
+//     fast        0.6 / 0.65 / 0.7 / 0.6      9.7 / 9.4 / 25.1 / 9.2
 //     balanced    1                           9.1 / 8.6 / 24.1 / 8.5
 //     best        1.15 / 1.3 / 2.6 / 1.1      9.1 / 8.4 / 21.0 / 8.6
 
