@@ -109,9 +109,9 @@ void expect_room(bool path_is_first) {
     TriangleHit hit;
     bool is_hit = false;
     std::vector<TriangleHit> hits;
-    ASSERT_TRUE(kernels->placed_closest_hit(tree, prepared, everything, kInfinity, hit));
-    ASSERT_TRUE(kernels->placed_any_hit(tree, prepared, everything, kInfinity, is_hit));
-    ASSERT_TRUE(kernels->placed_all_hits(tree, prepared, everything, kInfinity, hits));
+    ASSERT_TRUE(kernels->placed_closest_hit(tree, rays[0], wide.box, everything, kInfinity, hit));
+    ASSERT_TRUE(kernels->placed_any_hit(tree, rays[0], wide.box, everything, kInfinity, is_hit));
+    ASSERT_TRUE(kernels->placed_all_hits(tree, rays[0], wide.box, everything, kInfinity, hits));
     EXPECT_EQ(hit.key, deep.triangles.size() - kCrowd / 2);
     EXPECT_TRUE(is_hit);
     EXPECT_EQ(hits.size(), 1u);

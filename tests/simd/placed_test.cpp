@@ -71,9 +71,10 @@ void expect_placed_right(const std::string& name, const std::vector<Triangle>& t
         bool is_hit = false;
         std::vector<TriangleHit> all;
         const Passage passage{inside, world.t_min};
-        const bool is_answered = kernels->placed_closest_hit(*tree, ray, passage, world.t_max, hit);
-        if (kernels->placed_any_hit(*tree, ray, passage, world.t_max, is_hit) != is_answered ||
-            kernels->placed_all_hits(*tree, ray, passage, world.t_max, all) != is_answered)
+        const Ray local{ray.origin, ray.t_min, ray.direction, ray.t_max};
+        const bool is_answered = kernels->placed_closest_hit(*tree, local, bounds, passage, world.t_max, hit);
+        if (kernels->placed_any_hit(*tree, local, bounds, passage, world.t_max, is_hit) != is_answered ||
+            kernels->placed_all_hits(*tree, local, bounds, passage, world.t_max, all) != is_answered)
           ++wrong;
         if (!is_answered) continue;
         Crossings found;

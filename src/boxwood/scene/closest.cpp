@@ -52,9 +52,8 @@ Hit find_closest(const Scene::Parts& parts, const Ray& ray, Statistics& statisti
 
 void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit) {
   const Geometry& geometry = parts.desc.geometries[hit.geometry_id.value];
-  const Affine3& world_from_object = parts.instances[hit.instance_id.value].world_from_object;
   const Affine3& object_from_world = parts.object_from_world[hit.instance_id.value];
-  const bool is_moved = !(world_from_object == Affine3::identity());
+  const bool is_moved = parts.is_moved[hit.instance_id.value];
 
   Vec3 normal;
   if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {

@@ -228,6 +228,10 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
                                   " reaches beyond what a float can hold");
   parts->top_level = build_in_leaf_order(
       parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
+  std::vector<Box3> placed_boxes;
+  for (const Placement& placement : parts->placements) placed_boxes.push_back(placement.world_box);
+  parts->placement_tree = width == 4 ? simd::BoxTree(collapse<4>(parts->top_level, executor), placed_boxes)
+                                     : simd::BoxTree(collapse<8>(parts->top_level, executor), placed_boxes);
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
   // Choose who answers for the world's triangles.

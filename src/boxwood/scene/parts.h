@@ -7,6 +7,7 @@
 #pragma once
 
 #include "boxwood/scene/scene.h"
+#include "boxwood/simd/box_tree.h"
 #include "boxwood/simd/kernels.h"
 
 namespace boxwood {
@@ -68,7 +69,8 @@ struct Scene::Parts {
   Part world;
   std::vector<Part> objects;
   std::vector<Placement> placements;
-  Bvh top_level;  ///< Over the world boxes of `placements`.
+  Bvh top_level;                 ///< Over the world boxes of `placements`;
+  simd::BoxTree placement_tree;  ///< and the same for kernels.
   Box3 bounds;
   /// Those for the world's triangles; null when plain C++ is to walk, or there are none.
   const simd::Kernels* kernels = nullptr;

@@ -176,18 +176,19 @@ class PlacementQuery {
     if (above.inside.is_empty()) return;
     const Part& part = parts_.objects[placement.part_index];
     Labelled<Sink> any{sink_, {}, {}};
-    const PreparedRay local(placement.object_from_world.point(ray_.origin),
-                            placement.object_from_world.vector(ray_.direction),
-                            inner_t_min(ray_, above.inside), above.gate(any).limit(), part.bounds);
+    const Ray ray{placement.object_from_world.point(ray_.origin), inner_t_min(ray_, above.inside),
+                  placement.object_from_world.vector(ray_.direction), above.gate(any).limit()};
+    const bool is_answered = std::is_same_v<Statistics, NoStatistics> && ask_kernel(part, ray, above);
+    if (is_answered && part.shapes.empty()) return;
+    const PreparedRay local(ray.origin, ray.direction, ray.t_min, ray.t_max, part.bounds);
     if (!local.is_valid()) return;
-    if (!std::is_same_v<Statistics, NoStatistics> || !ask_kernel(part, local, above))
-      walk_triangles(part, local, above, sink_, statistics_);
+    if (!is_answered) walk_triangles(part, local, above, sink_, statistics_);
     walk_shapes(parts_, part, local, above, sink_, statistics_);
   }
 
  private:
   /// Has the part's triangles answered by a kernel; false when there is none that takes the ray.
-  bool ask_kernel(const Part& part, const PreparedRay& local, const UnderPlacement& above) {
+  bool ask_kernel(const Part& part, const Ray& ray, const UnderPlacement& above) {
     const simd::TriangleTree& tree = part.triangles;
     if (tree.is_empty()) return true;
     const simd::Kernels* kernels = simd::kernels();
@@ -196,21 +197,21 @@ class PlacementQuery {
     const auto report = [&](const simd::TriangleHit& hit) {
       const Triangle triangle = tree.triangle(hit.block, hit.lane);
       Crossing crossing;
-      intersect_triangle(local, triangle.a, triangle.b, triangle.c, crossing);
+      intersect_triangle(RayShear(ray.origin, ray.direction), triangle.a, triangle.b, triangle.c, crossing);
       crossing.t = hit.t;
       LabelledByKey<UnderPlacement, Sink>{sink_, part, above, hit.key}.report(crossing);
     };
     if constexpr (Sink::kQuestion == Question::closest) {
       simd::TriangleHit hit;
-      if (!kernels->placed_closest_hit(tree, local, passage, sink_.limit(), hit)) return false;
+      if (!kernels->placed_closest_hit(tree, ray, part.bounds, passage, sink_.limit(), hit)) return false;
       if (hit.is_hit()) report(hit);
     } else if constexpr (Sink::kQuestion == Question::any) {
       bool is_hit = false;
-      if (!kernels->placed_any_hit(tree, local, passage, sink_.limit(), is_hit)) return false;
+      if (!kernels->placed_any_hit(tree, ray, part.bounds, passage, sink_.limit(), is_hit)) return false;
       if (is_hit) sink_.report({}, {}, {});
     } else {
       std::vector<simd::TriangleHit> found;
-      if (!kernels->placed_all_hits(tree, local, passage, sink_.limit(), found)) return false;
+      if (!kernels->placed_all_hits(tree, ray, part.bounds, passage, sink_.limit(), found)) return false;
       for (const simd::TriangleHit& hit : found) report(hit);
     }
     return true;
@@ -222,13 +223,33 @@ class PlacementQuery {
   Statistics& statistics_;
 };
 
+/// Has a kernel find the placements that `query` must visit; false when there is none that takes the ray.
+template <class Query>
+bool visit_placements(const Scene::Parts& parts, const PreparedRay& ray, Query& query) {
+  if (parts.placement_tree.is_empty()) return true;
+  if (parts.placements.size() == 1) {  // which tells by itself that a ray passes it
+    query.visit(PrimId(0));
+    return true;
+  }
+  const simd::Kernels* kernels = simd::kernels();
+  if (!kernels || !parts.placement_tree.is_ordinary()) return false;
+  const auto visit = [](void* context, std::uint32_t item) {
+    Query& asked = *static_cast<Query*>(context);
+    asked.visit(PrimId(item));
+    return asked.limit();
+  };
+  return kernels->visit_boxes(parts.placement_tree, {ray.origin, ray.t_min, ray.direction, query.limit()},
+                              parts.bounds, visit, &query);
+}
+
 /// Shows `sink` everything that `ray` may meet but the world's triangles:
 /// sink.limit(), sink.report(crossing, instance_id, primitive_id).
 template <class Sink, class Statistics>
 void walk_others(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
   walk_shapes(parts, parts.world, ray, NoPlacement{}, sink, statistics);
   PlacementQuery<Sink, Statistics> placements(parts, ray, sink, statistics);
-  traverse(parts.top_level, placements, statistics);
+  if (!std::is_same_v<Statistics, NoStatistics> || !visit_placements(parts, ray, placements))
+    traverse(parts.top_level, placements, statistics);
 }
 
 /// Everything.

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include "boxwood/simd/batch-inl.h"
+#include "boxwood/simd/boxes-inl.h"
 #include "boxwood/simd/closest_point-inl.h"
 #include "boxwood/simd/finish-inl.h"
 
@@ -54,26 +55,29 @@ struct KernelsFor {
     return true;
   }
 
-  static bool placed_closest_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
-                                 float t_max, TriangleHit& hit) {
-    if (!is_ordinary(ray, tree.box())) return false;
+  static bool placed_closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
+                                 const Passage& passage, float t_max, TriangleHit& hit) {
+    KernelRay kernel_ray;
+    if (!prepare<true>(ray, bounds, tree.box_slack(), kernel_ray)) return false;
     hit = {t_max + 0.0f};
-    closest_hit_one<Layout>(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, hit);
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, hit);
     if (!hit.is_hit()) hit.t = kInfinity;
     return true;
   }
 
-  static bool placed_any_hit(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
-                             float t_max, bool& is_hit) {
-    if (!is_ordinary(ray, tree.box())) return false;
-    is_hit = any_hit_one<Layout>(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f);
+  static bool placed_any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
+                             const Passage& passage, float t_max, bool& is_hit) {
+    KernelRay kernel_ray;
+    if (!prepare<true>(ray, bounds, tree.box_slack(), kernel_ray)) return false;
+    is_hit = any_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, t_max + 0.0f);
     return true;
   }
 
-  static bool placed_all_hits(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
-                              float t_max, std::vector<TriangleHit>& hits) {
-    if (!is_ordinary(ray, tree.box())) return false;
-    all_hits_one<Layout>(tree.pool(), KernelRay(ray, tree.box_slack()), Moved{passage}, t_max + 0.0f, hits);
+  static bool placed_all_hits(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
+                              const Passage& passage, float t_max, std::vector<TriangleHit>& hits) {
+    KernelRay kernel_ray;
+    if (!prepare<true>(ray, bounds, tree.box_slack(), kernel_ray)) return false;
+    all_hits_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, t_max + 0.0f, hits);
     return true;
   }
 
@@ -115,6 +119,13 @@ struct Either<kFull, kCompact> {
 using Full = KernelsFor<FullLayout>;
 using Compact = KernelsFor<CompactLayout>;
 
+bool visit_boxes(const BoxTree& tree, const Ray& ray, const Box3& bounds, VisitItem visit, void* context) {
+  KernelRay kernel_ray;
+  if (!prepare(ray, bounds, BoxTree::kSlack, kernel_ray)) return false;
+  visit_boxes_one(tree.pool(), kernel_ray, ray.t_max + 0.0f, visit, context);
+  return true;
+}
+
 constexpr std::string_view target_name() {
   switch (HWY_TARGET) {
     case HWY_AVX3:
@@ -142,6 +153,7 @@ const Kernels* table() {
                                   Either<Full::placed_closest_hit, Compact::placed_closest_hit>::ask,
                                   Either<Full::placed_any_hit, Compact::placed_any_hit>::ask,
                                   Either<Full::placed_all_hits, Compact::placed_all_hits>::ask,
+                                  visit_boxes,
                                   Either<Full::closest_hits, Compact::closest_hits>::ask,
                                   Either<Full::any_hits, Compact::any_hits>::ask,
                                   Either<Full::finish_hits, Compact::finish_hits>::ask,

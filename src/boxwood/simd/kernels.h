@@ -12,6 +12,7 @@
 
 #include "boxwood/core/hit.h"
 #include "boxwood/core/prepared_ray.h"
+#include "boxwood/simd/box_tree.h"
 #include "boxwood/simd/triangle_tree.h"
 
 namespace boxwood::simd {
@@ -46,6 +47,9 @@ struct Passage {
   float t_min;
 };
 
+/// Looks at an item of a BoxTree; returns how far, in t, others still matter.
+using VisitItem = float (*)(void* context, std::uint32_t item);
+
 /// The kernels of one instruction set.
 ///
 /// `bounds` are those that a PreparedRay would be made with: of the whole scene. Kernels take ordinary rays
@@ -69,13 +73,19 @@ struct Kernels {
   bool (*all_hits)(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
                    std::vector<TriangleHit>& hits);
 
-  /// The same for a ray in object space, below a placement; t_max is the world's, and so are the answers.
-  bool (*placed_closest_hit)(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
-                             float t_max, TriangleHit& hit);
-  bool (*placed_any_hit)(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
+  /// The same for a ray in object space, below a placement, whose t_min may be negative or -inf; `bounds` are
+  /// those of the object, t_max is the world's, and so are the answers.
+  bool (*placed_closest_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
+                             const Passage& passage, float t_max, TriangleHit& hit);
+  bool (*placed_any_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds, const Passage& passage,
                          float t_max, bool& is_hit);
-  bool (*placed_all_hits)(const TriangleTree& tree, const PreparedRay& ray, const Passage& passage,
-                          float t_max, std::vector<TriangleHit>& hits);
+  bool (*placed_all_hits)(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
+                          const Passage& passage, float t_max, std::vector<TriangleHit>& hits);
+
+  /// Calls visit(context, item) for every item of the tree whose box the ray enters before a limit, nearest
+  /// boxes first: ray.t_max at the beginning, then what visit() returned last, which must not grow.
+  bool (*visit_boxes)(const BoxTree& tree, const Ray& ray, const Box3& bounds, VisitItem visit,
+                      void* context);
 
   /// As the first three for many rays, on the calling thread: hits[i] answers rays[i]. The indices of rays
   /// that are not ordinary are appended to `unusual`. Memory at `answers`, where finish_hits will write, is

@@ -56,28 +56,6 @@ struct alignas(64) KernelRay {
   std::int32_t axis_row[4];
   float t_min;
 
-  KernelRay() = default;
-
-  /// From a ray that was prepared before, for boxes of that slack; its t_min may be negative.
-  KernelRay(const PreparedRay& ray, float box_slack) : t_min(ray.t_min) {
-    const int axes[3] = {ray.axis_x, ray.axis_y, ray.axis_z};
-    const float constants[3] = {ray.shear_x, ray.shear_y, ray.shear_z};
-    for (int k = 0; k < 3; ++k) {
-      // The distance of the shifts is twice the slack.
-      gate_near_shift[k] = ray.near_shift()[k];
-      gate_far_shift[k] = ray.far_shift()[k];
-      const float more = (gate_far_shift[k] - gate_near_shift[k]) * ((box_slack - 1) * 0.5f) + 0x1p-120f;
-      inverse[k] = ray.inverse()[k];
-      near_shift[k] = gate_near_shift[k] - more;
-      far_shift[k] = gate_far_shift[k] + more;
-      near_row[k] = kRowBytes * (2 * k + ray.is_backward(k));
-      far_row[k] = near_row[k] ^ kRowBytes;
-      origin[k] = ray.origin[axes[k]];
-      shear[k] = constants[k];
-      axis_row[k] = 16 * axes[k];
-    }
-  }
-
   RayShear shear_constants() const {
     RayShear s;
     const int axes[3] = {axis_row[0] / 16, axis_row[1] / 16, axis_row[2] / 16};
@@ -91,13 +69,6 @@ struct alignas(64) KernelRay {
     return s;
   }
 };
-
-/// Whether a ray that was prepared before is an ordinary one, for a tree inside `box`.
-HWY_INLINE bool is_ordinary(const PreparedRay& ray, const Box3& box) {
-  const Vec3 far_away = max(abs(box.lower - ray.origin), abs(box.upper - ray.origin)) + abs(ray.direction);
-  return max_component(abs(ray.direction)) >= kSmallestDirection && far_away.x <= kLargestReach &&
-         far_away.y <= kLargestReach && far_away.z <= kLargestReach;
-}
 
 /// Positions in the three orders of axes, for permuting and for rows of a block.
 alignas(16) inline constexpr std::int32_t kAxes[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}, {0, 1, 2, 3}};
@@ -115,7 +86,9 @@ HWY_INLINE V4 largest(V4 v) {
 }
 
 /// Prepares `ray` for a tree inside `bounds` (TriangleTree::is_ordinary()) whose boxes need `box_slack`;
-/// false when the ray is not ordinary.
+/// false when the ray is not ordinary. Its t_min counts as 0 where it is negative, but below a placement
+/// (kSigned).
+template <bool kSigned = false>
 HWY_INLINE bool prepare(const Ray& ray, const Box3& bounds, float box_slack, KernelRay& out) {
   const D4 d;
   const DI4 di;
@@ -131,7 +104,7 @@ HWY_INLINE bool prepare(const Ray& ray, const Box3& bounds, float box_slack, Ker
   const V4 reach = largest(to_corner);
 
   // Whether the ray is ordinary: comparisons with NaN are false, and a sum keeps one.
-  const float t_min = ray.t_min < 0 ? 0.0f : ray.t_min;
+  const float t_min = !kSigned && ray.t_min < 0 ? 0.0f : ray.t_min;
   const auto is_ordinary = hn::And(hn::Le(hn::Add(abs_dir, to_corner), hn::Set(d, kLargestReach)),
                                    hn::Ge(d_max, hn::Set(d, kSmallestDirection)));
   if (HWY_UNLIKELY(!hn::AllTrue(d, is_ordinary) || !(ray.t_max >= t_min))) return false;

@@ -1,0 +1,48 @@
+// boxes-inl.h: which boxes of a BoxTree does a ray enter, nearest first? Compiled once for each instruction
+// set (kernels.cpp).
+
+#if defined(BOXWOOD_SIMD_BOXES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXWOOD_SIMD_BOXES_INL_H
+#undef BOXWOOD_SIMD_BOXES_INL_H
+#else
+#define BOXWOOD_SIMD_BOXES_INL_H
+#endif
+
+#include "boxwood/simd/box_tree.h"
+#include "boxwood/simd/single-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::simd::HWY_NAMESPACE {
+
+/// Calls visit(context, item) for the items whose boxes the ray enters before `limit`, then before what
+/// visit() returned last.
+HWY_NOINLINE inline void visit_boxes_one(const char* pool, const KernelRay& ray, float limit, VisitItem visit,
+                                         void* context) {
+  const DIW di;
+  const BoxRay<false> box_ray(ray);
+  HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
+  keys[0] = std::numeric_limits<std::int32_t>::min();  // below every limit
+  refs[0] = static_cast<std::int32_t>(kBottom);
+  std::size_t top = 0;
+  for (std::uint32_t current = 0; current != kBottom;) {
+    if ((current & 3) == 0) {
+      const char* node = node_at(pool, current);
+      const Slabs slabs = box_ray.template cross<FullLayout>(node, limit);
+      const std::size_t count = hn::CountTrue(di, slabs.enters);
+      push_children(di, make_keys(slabs.entry), slabs.enters, children_of<FullLayout>(node), count,
+                    keys + top + 1, refs + top + 1);
+      top += count;
+    } else {
+      limit = visit(context, BoxTree::item_of(current));
+    }
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit) | 7;
+    while (keys[top] > limit_key) --top;
+    current = static_cast<std::uint32_t>(refs[top]);
+    if (top > 0) --top;
+  }
+}
+
+}  // namespace boxwood::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
