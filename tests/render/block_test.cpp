@@ -128,7 +128,9 @@ TEST(Block, LightsAreThoseThatEachPointTries) {
             EXPECT_EQ(found.shadow_ray(i).t_max, expected->shadow_ray.t_max);
           }
         }
-        if (squares + with_others + with_far > 0) EXPECT_GT(found_any, 100);
+        if (squares + with_others + with_far > 0) {
+          EXPECT_GT(found_any, 100);
+        }
       }
 }
 
@@ -235,7 +237,9 @@ TEST(Block, NoRayThatMeetsAVeilIsTakenForOneThatDoesNot) {
   RayCounts rays;
   shadows.transmittances(ways, found, rays);
   for (std::size_t i = 0; i < ways.size(); ++i)
-    if (expected[i] > 0) EXPECT_EQ(found[i].x, expected[i]) << i;
+    if (expected[i] > 0) {
+      EXPECT_EQ(found[i].x, expected[i]) << i;
+    }
   EXPECT_GT(rays.shadow, 1000u);  // those that cannot meet one are not asked twice
 }
 
