@@ -52,7 +52,7 @@ std::string describe(const char* type, const Shape& shape, const float* t, const
 }
 
 /// Lets the system take the pages of a block when it is short of them; those that it leaves need no clearing.
-void lend_to_system(simd::HugeBuffer& block) {
+void lend_to_system(MemoryBlock& block) {
 #if defined(__linux__) && defined(MADV_FREE)
   constexpr std::size_t kLargestPage = std::size_t(64) << 10;
   madvise(block.data(), block.size() / kLargestPage * kLargestPage, MADV_FREE);
@@ -65,15 +65,16 @@ void lend_to_system(simd::HugeBuffer& block) {
 
 Block allocate_block(std::size_t size) {
   constexpr std::size_t kMinSpareBytes = std::size_t(1) << 20;  // below, memory is cheap
+  constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
   size = std::max<std::size_t>(size, 64);
-  if (size < kMinSpareBytes) return std::make_shared<simd::HugeBuffer>(size);
+  if (size < kMinSpareBytes) return std::make_shared<MemoryBlock>(size, kLine);
 
   // The last result that was let go of leaves its block, for one that is nearly as large.
-  static std::atomic<simd::HugeBuffer*> spare{nullptr};
-  std::unique_ptr<simd::HugeBuffer> buffer(spare.exchange(nullptr));
+  static std::atomic<MemoryBlock*> spare{nullptr};
+  std::unique_ptr<MemoryBlock> buffer(spare.exchange(nullptr));
   if (!buffer || buffer->size() < size || buffer->size() / 2 > size)
-    buffer = std::make_unique<simd::HugeBuffer>(size);
-  return Block(buffer.release(), [](simd::HugeBuffer* old) {
+    buffer = std::make_unique<MemoryBlock>(size, size >= kHugePage ? kHugePage : kLine);
+  return Block(buffer.release(), [](MemoryBlock* old) {
     if (old->size() <= kMaxSpareBytes) {
       lend_to_system(*old);
       old = spare.exchange(old);

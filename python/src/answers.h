@@ -10,15 +10,15 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include "boxwood/core/memory_block.h"
 #include "boxwood/scene/scene.h"
 #include "boxwood/scene/surface.h"
-#include "boxwood/simd/huge_buffer.h"
 #include "rows.h"
 
 namespace boxwood::python {
 
 /// Memory that results and their arrays share.
-using Block = std::shared_ptr<simd::HugeBuffer>;
+using Block = std::shared_ptr<MemoryBlock>;
 
 /// A block of so many bytes, perhaps one that an earlier result has left: clearing fresh pages costs a tenth
 /// of the time in which a million rays are answered, and more where the system is short of them. One block of
