@@ -136,6 +136,7 @@ def plot(rows, names, path):
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib import ticker
 
     rows = [row for row in rows if row["question"] == "closest hit"]
     titles = list(dict.fromkeys(row["scene"] for row in rows))
@@ -154,6 +155,9 @@ def plot(rows, names, path):
                     label = f"{name}, {threads} thread{'s' if threads > 1 else ''}"
                     field.plot(*zip(*points), style, color=colors.get(name), marker="o", markersize=3, label=label)
         field.set(title=title, xscale="log", yscale="log", xlabel="rays in a call")
+        field.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        field.yaxis.set_major_formatter(ticker.FuncFormatter(lambda rate, _: f"{rate:g}"))
+        field.yaxis.set_minor_formatter(ticker.NullFormatter())
         field.grid(True, which="major", alpha=0.25)
         field.spines[["top", "right"]].set_visible(False)
     fields[0][0].set_ylabel("million rays a second")
