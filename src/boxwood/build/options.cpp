@@ -4,8 +4,8 @@ namespace boxwood {
 
 // The figures behind the presets, with blocks of four (the kernels'): the time to build a whole scene beside
 // `balanced`, in thread time, and how many nodes and blocks bounce rays visit in the wide tree, in units of a
-// node (a block counts half). Bunny / kitchen / soup / terrain: of a million and 8.4 million triangles for the
-// time, of 300,000 and half a million for the visits. docs/performance.md has the times beside Embree's.
+// node (a block counts half). Bunny / kitchen / soup / terrain: of a million and 8.4 million triangles for
+// the time, of 300,000 and half a million for the visits. docs/performance.md has the times beside Embree's.
 //
 //     preset      time                        visits
 //     fast        0.6 / 0.65 / 0.7 / 0.6      9.7 / 9.4 / 25.1 / 9.2
