@@ -9,7 +9,7 @@ holds every picture to the same program's own picture of many samples. Both trac
 box filter, without clamping, denoising or adaptive sampling. The time is that of the processor, all threads together,
 so that other programs do not matter much, and that of a sample, by the slope between two renders, so that neither
 pays for its start. The error falls as 1 / samples; the time to a relative MSE of 0.01 follows from a render near it.
-Needs `blender` (Debian: apt-get install blender); tried with 3.4.
+Needs `blender` (Debian: apt-get install blender python3-numpy); tried with 3.4.
 """
 
 import argparse
@@ -222,7 +222,10 @@ def render_cycles(program, scene, threads, size, jobs):
         script.flush()
         said = run([program, "-b", "-noaudio", "-P", script.name, "--", scene, threads, size,
                     *(x for job in jobs for x in job)])
-    return [float(found) for found in re.findall(r"^TOOK \d+ ([\d.]+)", said, re.MULTILINE)]
+    seconds = [float(found) for found in re.findall(r"^TOOK \d+ ([\d.]+)", said, re.MULTILINE)]
+    if len(seconds) != len(jobs):  # it exits with 0 whatever its script does
+        raise SystemExit(f"{program} did not render: {said.strip()}")
+    return seconds
 
 
 def main():
