@@ -187,7 +187,10 @@ void print_costs(const SceneReport& report) {
   print_line("trees", bytes(report.tree_bytes), a_primitive(report.tree_bytes));
   print_line("together", bytes(report.geometry_bytes + report.tree_bytes),
              a_primitive(report.geometry_bytes + report.tree_bytes));
-  print_line("textures", bytes(report.texture_bytes), "");
+  print_line("textures", bytes(report.texture_bytes),
+             report.cached_textures > 0
+                 ? fmt::format("and {} in files, read by tiles when rendered", report.cached_textures)
+                 : "");
   print_line("building", fmt::format("{:.1f} ms", report.build_ms), "");
 }
 

@@ -55,6 +55,7 @@ void count_contents(const SceneDesc& desc, SceneReport& out) {
   out.textures = desc.textures.size();
   for (const Texture& texture : desc.textures) {
     out.texels += std::size_t(texture.width) * texture.height;
+    out.cached_textures += texture.source != nullptr;
     out.texture_bytes += texture.texels.size() * sizeof(texture.texels[0]);
   }
   out.point_lights = desc.point_lights.size();

@@ -31,7 +31,7 @@ struct SceneReport {
   std::size_t defined_primitives = 0, shown_primitives = 0;
   std::size_t instances = 0;
   std::map<std::string, std::size_t> materials;  ///< Kind -> how many materials are of it.
-  std::size_t textures = 0, texels = 0;
+  std::size_t textures = 0, cached_textures = 0, texels = 0;
   std::size_t emissive_materials = 0, point_lights = 0, distant_lights = 0;
   bool has_sky = false, has_sun = false;
   Box3 bounds;  ///< Empty when nothing can be hit.

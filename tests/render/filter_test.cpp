@@ -66,7 +66,9 @@ TEST(Filters, SignsComeEvenlyAndNeverLeaveAPixelWithoutAMean) {
     const FilterSample sample = sampler.sample(numbers.next_2d(), index);
     const double at = value(sample.offset.x) * value(sample.offset.y);
     // Within a cell the filter is taken for even, so a sample may fall a little beyond a zero.
-    if (std::fabs(at) > 0.05) EXPECT_EQ(sample.sign, at > 0 ? 1 : -1) << index;
+    if (std::fabs(at) > 0.05) {
+      EXPECT_EQ(sample.sign, at > 0 ? 1 : -1) << index;
+    }
     negative += sample.sign < 0;
     const double count = index + 1.0;
     ASSERT_NEAR(negative, share * count, 1 + 0.001 * count) << count;

@@ -1,4 +1,6 @@
 // Lights: the tree over many of them, and pictures of the surroundings.
+#include "boxwood/render/light.h"
+
 #include <gtest/gtest.h>
 
 #include "boxwood/core/random.h"
@@ -218,6 +220,53 @@ TEST(Path, SpotLightsShineInTheirConeOnly) {
   const float x = 2 * std::tan(0.6f),
               t = (std::cos(0.6f) - std::cos(0.7f)) / (std::cos(0.5f) - std::cos(0.7f));
   EXPECT_NEAR(floor_at(x) / expected(x, t * t * (3 - 2 * t)), 1, 1e-3f);
+}
+
+TEST(Lights, DensityOfAHitIsThatOfTheSample) {
+  // For every kind of emitter: sample a point, trace to it, and ask for the density of what was hit.
+  SceneDesc desc;
+  const MaterialId material = desc.add(lamp(3, true));
+  const MaterialId dull = desc.add(Material{});
+  desc.add(std::vector<Sphere>{{{-4, 3, 0}, 0.7f}, {{-4, 5, 1}, 0.2f}}, material);
+  desc.add(std::vector<Disk>{{{4, 3, 0}, {1, -1, 0.2f}, 0.7f}}, material);
+  desc.add(std::vector<Quad>{{{0, 3, 4}, {1, 3, 4}, {1.2f, 3.5f, 5}, {0, 3, 5}}}, material);
+  desc.add(std::vector<Cuboid>{{{0, 3, -4}, {1, 4, -3}}}, material);
+  Geometry mixed{
+      TriangleMesh{{{0, 5, 0}, {1, 5, 0}, {0, 5, 1}, {1, 6, 1}}, {{0, 1, 2}, {1, 2, 3}, {0, 2, 3}}, {}, {}},
+      {},
+      {dull, material, material},
+      ""};
+  desc.add(std::move(mixed));
+  desc.instances = placed_instances(desc);
+  for (Instance& instance : desc.instances)
+    instance.world_from_object = Affine3::translation({0.1f, 0.2f, 0.3f}) * Affine3::rotation({1, 2, 3}, 20) *
+                                 Affine3::scale({1, 1.3f, 0.8f});
+  const Scene scene(desc);
+  const Lights lights(scene, Camera{});
+
+  Surface surface{};
+  surface.normal = surface.shading_normal = {0, 1, 0};
+  std::array<int, 5> found{};
+  for (std::uint32_t s = 0; s < 2000; ++s) {
+    Sampler sampler(3, s);
+    const float choice = sampler.next_1d();
+    const auto sample = lights.sample(surface, surface.normal, choice, sampler.next_2d());
+    if (!sample) continue;
+    // The shadow ray ends just before the light; drawn out a little, it hits it.
+    Ray ray{surface.position, 0, sample->direction};
+    const Hit hit = scene.closest_hit(ray);
+    if (!hit || std::fabs(hit.t - length(sample->shadow_ray.direction)) > 5e-5f)
+      continue;  // something is in the way
+    const float pdf =
+        lights.pdf(hit, surface_at(scene, ray, hit), sample->direction, {surface.position, surface.normal});
+    const float cosine = std::fabs(dot(hit.normal, sample->direction));
+    // Seen edge-on the density grows as 1 / cosine, of which rounding leaves four digits.
+    EXPECT_NEAR(pdf / sample->pdf, 1, max(0.01f, 1e-4f / cosine))
+        << "geometry " << hit.geometry_id.value << ", cosine " << cosine;
+    EXPECT_FALSE(scene.any_hit(sample->shadow_ray)) << "geometry " << hit.geometry_id.value;
+    ++found[hit.geometry_id.value];
+  }
+  for (std::size_t kind = 0; kind < found.size(); ++kind) EXPECT_GT(found[kind], 20) << "geometry " << kind;
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ SceneStatistics Scene::statistics() const {
   add_part(parts_->world);
   for (const Part& object : parts_->objects) add_part(object);
   add_tree(parts_->top_level);
-  s.tree_bytes += parts_->placements.size() * sizeof(Placement);
+  s.tree_bytes += parts_->placement_tree.size_bytes() + parts_->placements.size() * sizeof(Placement);
   return s;
 }
 
