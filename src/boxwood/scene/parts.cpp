@@ -149,8 +149,8 @@ Bvh build_in_leaf_order(std::vector<Item>& items, const BoxOf& box_of, const Bui
 
 void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options, int width,
                  Executor& executor) {
-  part.triangles = width == 4 ? build_triangles<4>(part, desc, options, executor)
-                              : build_triangles<8>(part, desc, options, executor);
+  part.triangles =
+      with_width(width, [&](auto w) { return build_triangles<w()>(part, desc, options, executor); });
   part.shape_bvh = build_in_leaf_order(
       part.shapes,
       [&](const LeafShape& s) {
@@ -230,8 +230,9 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
       parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
   std::vector<Box3> placed_boxes;
   for (const Placement& placement : parts->placements) placed_boxes.push_back(placement.world_box);
-  parts->placement_tree = width == 4 ? simd::BoxTree(collapse<4>(parts->top_level, executor), placed_boxes)
-                                     : simd::BoxTree(collapse<8>(parts->top_level, executor), placed_boxes);
+  parts->placement_tree = with_width(width, [&](auto w) {
+    return simd::BoxTree(collapse<w()>(parts->top_level, executor), placed_boxes);
+  });
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
   // Choose who answers for the world's triangles.

@@ -35,7 +35,7 @@ HWY_NOINLINE inline void visit_boxes_one(const char* pool, const KernelRay& ray,
     } else {
       limit = visit(context, BoxTree::item_of(current));
     }
-    const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit) | 7;
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit) | kChildBits;
     while (keys[top] > limit_key) --top;
     current = static_cast<std::uint32_t>(refs[top]);
     if (top > 0) --top;

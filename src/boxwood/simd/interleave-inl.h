@@ -27,7 +27,7 @@ inline constexpr int kInFlight = 32;
 inline constexpr int kFewNodes = 16;
 
 /// Enough for 17 levels of eight children; deeper trees take one ray at a time.
-inline constexpr int kShortStack = 128;
+inline constexpr int kShortStack = kWidth > 8 ? 208 : 128;
 
 /// A ray and where it stands: *top is what it visits next, and top[kShortStack] its key.
 struct alignas(64) RayInFlight {
@@ -185,7 +185,7 @@ class Interleaved {
   /// Keeps of the stack what may still matter, below the leaf on top.
   HWY_INLINE void cull(RayInFlight& ray) {
     const DIW di;
-    const VIW limit = hn::Set(di, std::bit_cast<std::int32_t>(ray.hit.t) | 7);
+    const VIW limit = hn::Set(di, std::bit_cast<std::int32_t>(ray.hit.t) | kChildBits);
     std::int32_t *to = ray.refs + 1, *top = ray.top;
     for (std::int32_t* from = to; from < top; from += kWidth) {
       const VIW keys = hn::LoadU(di, from + kShortStack), refs = hn::LoadU(di, from);

@@ -89,15 +89,19 @@ template <class D>
 HWY_INLINE hn::Vec<DI4> first_four(D, hn::Vec<D> v) {
   if constexpr (kWidth == 4)
     return v;
-  else
+  else if constexpr (kWidth == 8)
     return hn::LowerHalf(DI4(), v);
+  else
+    return hn::LowerHalf(DI4(), hn::LowerHalf(hn::Half<D>(), v));
 }
 template <class D>
 HWY_INLINE hn::Vec<D> as_children(D d, hn::Vec<DI4> v) {
   if constexpr (kWidth == 4)
     return v;
-  else
+  else if constexpr (kWidth == 8)
     return hn::ZeroExtendVector(d, v);
+  else
+    return hn::ZeroExtendVector(d, hn::ZeroExtendVector(hn::Half<D>(), v));
 }
 
 /// Stores the references of the children that are entered, and their keys, the farthest first.
@@ -113,16 +117,28 @@ HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const s
     hn::StoreU(first, d4, stack_keys);
     hn::Vec<D> lanes = as_children(di, first);
     if constexpr (kWidth == 4 || HWY_IS_DEBUG_BUILD)
-      lanes = hn::And(lanes, hn::Set(di, 7));  // others look at 3 bits
+      lanes = hn::And(lanes, hn::Set(di, kChildBits));  // others look at no more bits
     const hn::Vec<D> sorted = hn::TableLookupLanes(hn::Load(di, children), hn::IndicesFromVec(di, lanes));
     hn::StoreU(first_four(di, sorted), d4, stack_refs);
     return;
   }
 
-  if constexpr (kWidth == 8) {
-    const hn::Vec<D> sorted = sort_eight_descending(di, keys);
+  if constexpr (kWidth > 4) {
+    if constexpr (kWidth > 8) {
+      if (HWY_LIKELY(count <= 8)) {
+        const hn::Half<D> d8;
+        const auto first = sort_eight_descending(d8, hn::LowerHalf(d8, keys));
+        hn::StoreU(first, d8, stack_keys);
+        hn::Vec<D> lanes = hn::ZeroExtendVector(di, first);
+        if constexpr (HWY_IS_DEBUG_BUILD) lanes = hn::And(lanes, hn::Set(di, kChildBits));
+        const hn::Vec<D> sorted = hn::TableLookupLanes(hn::Load(di, children), hn::IndicesFromVec(di, lanes));
+        hn::StoreU(hn::LowerHalf(d8, sorted), d8, stack_refs);
+        return;
+      }
+    }
+    const hn::Vec<D> sorted = sort_all_descending(di, keys);
     hn::StoreU(sorted, di, stack_keys);
-    const auto lanes = hn::IndicesFromVec(di, hn::And(sorted, hn::Set(di, 7)));
+    const auto lanes = hn::IndicesFromVec(di, hn::And(sorted, hn::Set(di, kChildBits)));
     hn::StoreU(hn::TableLookupLanes(hn::Load(di, children), lanes), di, stack_refs);
   }
 }
@@ -176,13 +192,11 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
           continue;
         }
         const auto count = static_cast<std::size_t>(__builtin_popcount(bits));
-        for (std::uint32_t b = bits; b; b &= b - 1)
-          prefetch_lines<Layout::kNodeLines>(
-              node_at(pool, static_cast<std::uint32_t>(children[__builtin_ctz(b)])));
         push_children(di, make_keys(slabs.entry), slabs.enters, children, count, keys + top + 1,
                       refs + top + 1);
         top += count - 1;
         current = static_cast<std::uint32_t>(refs[top + 1]);
+        prefetch_lines<Layout::kNodeLines>(node_at(pool, static_cast<std::uint32_t>(refs[top])));
         continue;
       }
     } else {
@@ -194,7 +208,7 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
             return false;
           });
     }
-    const std::int32_t limit_key = std::bit_cast<std::int32_t>(way.limit(hit.t)) | 7;
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(way.limit(hit.t)) | kChildBits;
     while (keys[top] > limit_key) --top;
     current = static_cast<std::uint32_t>(refs[top]);
     --top;

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "boxwood/core/id.h"
@@ -77,7 +78,7 @@ struct alignas(64) WideNode {
     children[child] = ref;
   }
 };
-static_assert(sizeof(WideNode<8>) == 256 && sizeof(WideNode<4>) == 128);
+static_assert(sizeof(WideNode<16>) == 448 && sizeof(WideNode<8>) == 256 && sizeof(WideNode<4>) == 128);
 
 /// Whether a slot of a block, or the key of a lane, only fills the block.
 template <class T>
@@ -98,5 +99,13 @@ struct WideBvh {
     return nodes.size() * sizeof(WideNode<W>) + slots.size() * sizeof(PrimId);
   }
 };
+
+/// Calls f with the number of children of a node as a constant of the program, W in std::integral_constant<int, W>.
+template <class F>
+decltype(auto) with_width(int width, const F& f) {
+  if (width == 4) return f(std::integral_constant<int, 4>());
+  if (width == 8) return f(std::integral_constant<int, 8>());
+  return f(std::integral_constant<int, 16>());
+}
 
 }  // namespace boxwood
