@@ -27,7 +27,7 @@ inline constexpr int kInFlight = 32;
 inline constexpr int kFewNodes = 16;
 
 /// Enough for 17 levels of eight children; deeper trees take one ray at a time.
-inline constexpr int kShortStack = kWidth > 8 ? 208 : 128;
+inline constexpr int kShortStack = kWidth > 8 ? 264 : 128;
 
 /// A ray and where it stands: *top is what it visits next, and top[kShortStack] its key.
 struct alignas(64) RayInFlight {

@@ -118,17 +118,18 @@ class Collapser {
 
     // dealt[n - 2]: n children, k of them to one side and the rest to the other, the best k. Most nodes have
     // few leaves below them, and so few ways to deal.
-    constexpr int kAtOnce = 4;
-    float dealt[2 * W + kAtOnce];
-    const int most = few->steps + many->steps, end = std::min(most - 1, W - 1);
-    std::fill(dealt, dealt + W + kAtOnce, kInfinity);
+    float dealt[2 * W], padded[W];
+    const int most = few->steps + many->steps;
+    std::fill(dealt, dealt + 2 * W, kInfinity);
+    std::copy(many->cost, many->cost + W - 1, padded);
+    padded[W - 1] = kInfinity;
     for (int k = 0; k < few->steps; ++k)
-      for (int n = 0; n < many->steps; n += kAtOnce)
-        for (int lane = 0; lane < kAtOnce; ++lane)
-          dealt[k + n + lane] = std::min(dealt[k + n + lane], few->cost[k] + many->cost[std::min(n + lane, W - 2)]);
+      for (int n = 0; n < many->steps; n += 4)
+        for (int lane = n; lane < n + 4; ++lane)
+          dealt[k + lane] = std::min(dealt[k + lane], few->cost[k] + padded[lane]);
 
     // As one child: a wide node of its own, or a leaf.
-    plan.cost[0] = std::min(area * cost_.node + dealt[end - 1], leaf_cost(i, area));
+    plan.cost[0] = std::min(area * cost_.node + dealt[std::min(most, W) - 2], leaf_cost(i, area));
     plan.steps = static_cast<std::uint16_t>(std::min(most, W - 1));
     for (int n = 1; n < W - 1; ++n) plan.cost[n] = std::min(plan.cost[n - 1], dealt[n - 1]);
   }

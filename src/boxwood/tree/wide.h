@@ -17,6 +17,7 @@
 //  6. No node lies deeper than kMaxWideDepth, so that a query can keep its stack in a fixed array.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
@@ -60,7 +61,10 @@ struct alignas(64) WideNode {
 
   /// All children empty.
   WideNode() {
-    for (int c = 0; c < W; ++c) set(c, Box3{}, ChildRef{});
+    for (int k = 0; k < 3; ++k) {  // row by row: every child with Box3{} and ChildRef{}
+      std::fill_n(planes[k][0], W, Box3{}.lower[k]);
+      std::fill_n(planes[k][1], W, Box3{}.upper[k]);
+    }
   }
   Box3 box(int child) const {
     Box3 box;
