@@ -16,7 +16,7 @@
 #include <cmath>
 #include <limits>
 
-#include "boxwood/simd/layout-inl.h"
+#include "boxwood/simd/single-inl.h"
 #include "boxwood/simd/triangle_tree.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -269,35 +269,20 @@ HWY_INLINE Vec3 normal_of(const TriangleBlock& block, const char*, std::uint32_t
 }
 #endif
 
-/// Works out one hit, whose ray is still at hand.
+/// Works out one hit, whose ray and edge functions are still at hand.
 template <class Layout>
 HWY_INLINE void finish_one(const TriangleTree& tree, const KernelRay& ray, const TriangleHit& found,
-                           Hit& hit) {
-  const D4 d;
+                           const EdgesOfHit& edges, Hit& hit) {
   const TriangleBlock& block = Layout::block(tree.pool() + std::size_t(found.block) * TriangleTree::kUnit);
   const char* lane = reinterpret_cast<const char*>(&block) + 4 * found.lane;
 
-  // A lane for each vertex.
-  const auto from_origin = [&](int k) {
-    const auto at = [&](int vertex) {
-      return hn::Set(d, *reinterpret_cast<const float*>(lane + 48 * vertex + ray.axis_row[k]));
-    };
-    return hn::Sub(hn::Set(d, ray.origin[k]), first_of_each(at(0), at(1), at(2)));
-  };
-  const V4 z = from_origin(2);
-  const V4 x = hn::Sub(from_origin(0), hn::Mul(hn::Set(d, ray.shear[0]), z));
-  const V4 y = hn::Sub(from_origin(1), hn::Mul(hn::Set(d, ray.shear[1]), z));
-
-  // The weights of c, a and b.
-  const V4 w = hn::Sub(hn::Mul(x, turned(y)), hn::Mul(y, turned(x)));
-  const V4 sum = hn::Add(hn::Add(hn::Broadcast<1>(w), hn::Broadcast<2>(w)), hn::Broadcast<0>(w));
-  HWY_ALIGN float weights[4];
-  hn::Store(hn::Mul(w, hn::Div(hn::Set(d, 1.0f), sum)), d, weights);
+  const float wa = edges.wa[found.lane], wb = edges.wb[found.lane], wc = edges.wc[found.lane];
+  const float sum = wa + wb + wc, inverse_sum = 1.0f / sum;
   hit.t = found.t;
-  hit.u = weights[2];
-  hit.v = weights[0];
+  hit.u = wb * inverse_sum;
+  hit.v = wc * inverse_sum;
   hit.normal = normal_of(block, lane, found.lane);
-  const float size = std::fabs(hn::GetLane(sum));
+  const float size = std::fabs(sum);
   if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) return;
   const Triangle triangle = block.triangle(found.lane);
   Crossing crossing;

@@ -159,7 +159,7 @@ class Interleaved {
       for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
         open->ray = ray;
         open->block = block;
-        open->crossed = test_edges(Layout::block(block), ray->ray);
+        open->crossed = test_edges(Layout::block(block), ray->ray).crossed;
         open += open->crossed.maybe != 0;
       }
     }

@@ -22,7 +22,8 @@ struct KernelsFor {
     KernelRay kernel_ray;
     if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
     hit = {ray.t_max + 0.0f};
-    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit);
+    EdgesOfHit edges;
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit, edges);
     if (!hit.is_hit()) hit.t = kInfinity;
     return true;
   }
@@ -32,9 +33,10 @@ struct KernelsFor {
     KernelRay kernel_ray;
     if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
     hit = {ray.t_max + 0.0f};
-    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit);
+    EdgesOfHit edges;
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit, edges);
     if (hit.is_hit())
-      finish_one<Layout>(tree, kernel_ray, hit, full);
+      finish_one<Layout>(tree, kernel_ray, hit, edges, full);
     else
       hit.t = kInfinity;
     return true;
@@ -60,7 +62,8 @@ struct KernelsFor {
     KernelRay kernel_ray;
     if (!prepare<true>(ray, bounds, tree.box_slack(), kernel_ray)) return false;
     hit = {t_max + 0.0f};
-    closest_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, hit);
+    EdgesOfHit edges;
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, hit, edges);
     if (!hit.is_hit()) hit.t = kInfinity;
     return true;
   }
