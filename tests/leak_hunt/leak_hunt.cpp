@@ -95,7 +95,8 @@ Count hunt(const simd::Kernels& kernels, simd::Layout layout, const test::Body& 
   const Bvh bvh = build(boxes(triangles));
   const Box3 bounds = bvh.bounds();
   const simd::TriangleTree tree = with_width(kernels.width, [&](auto w) {
-    return simd::TriangleTree(collapse<w()>(bvh, default_executor()), triangles, {}, default_executor(), layout);
+    return simd::TriangleTree(collapse<w()>(bvh, default_executor()), triangles, {}, default_executor(),
+                              layout);
   });
 #ifdef BOXWOOD_HAS_EMBREE
   const Peer fast(mesh, false), robust(mesh, true);

@@ -175,7 +175,8 @@ TEST(KernelBatches, ChainsOfAnyDepth) {
   constexpr int kMostLevels = kMaxWideDepth + 1;
   int deepest = 0;
   for (const Kernels* kernels : available_kernels())
-    for (const int levels : {1, 2, 5, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 30, 39, 40, 41, 42, 43, 60, kMostLevels}) {
+    for (const int levels :
+         {1, 2, 5, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 30, 39, 40, 41, 42, 43, 60, kMostLevels}) {
       with_width(kernels->width, [&](auto w) { expect_chain_right<w()>(*kernels, levels); });
       deepest = levels;
     }

@@ -41,10 +41,10 @@ std::vector<PackedTree> every_packed_tree(int width, std::span<const Triangle> t
   std::vector<PackedTree> packed;
   const auto add = [&](const std::string& name, const Bvh& bvh, WideCost cost) {
     for (const Layout layout : kLayouts) {
-      packed.push_back({name + (layout == Layout::full ? "" : ", compact"),
-                        with_width(width, [&, &bvh = bvh](auto w) {
-                          return pack_as<w()>(bvh, triangles, keys, layout, cost);
-                        })});
+      packed.push_back(
+          {name + (layout == Layout::full ? "" : ", compact"), with_width(width, [&, &bvh = bvh](auto w) {
+             return pack_as<w()>(bvh, triangles, keys, layout, cost);
+           })});
       EXPECT_EQ(validate(*packed.back().tree), "") << packed.back().name;
     }
   };

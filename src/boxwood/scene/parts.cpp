@@ -230,9 +230,8 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
       parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
   std::vector<Box3> placed_boxes;
   for (const Placement& placement : parts->placements) placed_boxes.push_back(placement.world_box);
-  parts->placement_tree = with_width(width, [&](auto w) {
-    return simd::BoxTree(collapse<w()>(parts->top_level, executor), placed_boxes);
-  });
+  parts->placement_tree = with_width(
+      width, [&](auto w) { return simd::BoxTree(collapse<w()>(parts->top_level, executor), placed_boxes); });
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
   // Choose who answers for the world's triangles.

@@ -220,13 +220,14 @@ class Bundle {
     const VIW sorted =
         sort_all_descending(di, compress(di, hn::IfThenElseZero(enters, make_keys(entry)), enters));
     hn::StoreU(sorted, di, keys);
-    hn::StoreU(hn::Or(hn::And(sorted, hn::Set(di, kChildBits)), hn::Set(di, static_cast<std::int32_t>(ref))), di,
-               refs);
+    hn::StoreU(hn::Or(hn::And(sorted, hn::Set(di, kChildBits)), hn::Set(di, static_cast<std::int32_t>(ref))),
+               di, refs);
 
     // The other bundle's turn comes first: time to fetch what is next.
     const std::int32_t* children = children_of<Layout>(node_at(pool, ref));
     for (std::size_t i = count > kFetchedAhead ? count - kFetchedAhead : 0; i < count; ++i)
-      prefetch_lines<Layout::kNodeLines>(node_at(pool, static_cast<std::uint32_t>(children[refs[i] & kChildBits])));
+      prefetch_lines<Layout::kNodeLines>(
+          node_at(pool, static_cast<std::uint32_t>(children[refs[i] & kChildBits])));
     return count;
   }
 

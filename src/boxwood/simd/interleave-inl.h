@@ -26,7 +26,7 @@ inline constexpr int kInFlight = 32;
 /// When no more rays than this stand before a node, the others are seen to.
 inline constexpr int kFewNodes = 16;
 
-/// Enough for 17 levels of eight children; deeper trees take one ray at a time.
+/// Enough for 16 levels of sixteen children, or 17 of eight; deeper trees take one ray at a time.
 inline constexpr int kShortStack = kWidth > 8 ? 264 : 128;
 
 /// A ray and where it stands: *top is what it visits next, and top[kShortStack] its key.

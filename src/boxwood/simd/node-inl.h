@@ -113,7 +113,8 @@ HWY_INLINE hn::Vec<D> sort_sixteen_descending(D d, hn::Vec<D> keys) {
     v = hn::ConcatUpperLower(half, hn::Min(v, swapped), hn::Max(v, swapped));
     const hn::Repartition<std::int64_t, hn::Half<D>> half64;
     const auto by_two = [&](auto a, auto b) {
-      return hn::BitCast(half, hn::OddEven(hn::BitCast(half64, hn::Min(a, b)), hn::BitCast(half64, hn::Max(a, b))));
+      return hn::BitCast(half,
+                         hn::OddEven(hn::BitCast(half64, hn::Min(a, b)), hn::BitCast(half64, hn::Max(a, b))));
     };
     v = by_two(v, hn::Shuffle1032(v));
     const auto other = hn::Shuffle2301(v);

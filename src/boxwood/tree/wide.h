@@ -1,10 +1,10 @@
-// wide.h: how does a tree with four or eight children a node lie in memory?
+// wide.h: how does a tree with four, eight or sixteen children a node lie in memory?
 //
 // A node holds rows of planes, so that one vector is the same plane of all children, and one reference for
-// each child. Eight children take 256 bytes, four cache lines; four take 128. Leaves are runs of blocks of
-// kBlockWidth primitives, which a kernel tests together; a block that is not full repeats its first
-// primitive. Data only: collapse (collapse.h) makes it from a binary tree, validate says the first broken
-// invariant:
+// each child. Sixteen children take 448 bytes, seven cache lines; eight take 256, four 128. Leaves are runs
+// of blocks of kBlockWidth primitives, which a kernel tests together; a block that is not full repeats its
+// first primitive. Data only: collapse (collapse.h) makes it from a binary tree, validate says the first
+// broken invariant:
 //
 //  1. nodes is empty when there are no primitives; otherwise node 0 is the root.
 //  2. A child is an interior node behind its parent in the array, a run of 1 to kMaxLeafBlocks blocks, or
@@ -104,7 +104,8 @@ struct WideBvh {
   }
 };
 
-/// Calls f with the number of children of a node as a constant of the program, W in std::integral_constant<int, W>.
+/// Calls f with the number of children of a node as a constant of the program, W in
+/// std::integral_constant<int, W>.
 template <class F>
 decltype(auto) with_width(int width, const F& f) {
   if (width == 4) return f(std::integral_constant<int, 4>());
