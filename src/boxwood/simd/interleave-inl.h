@@ -63,6 +63,7 @@ class Interleaved {
         unusual_(unusual) {}
 
   void run(RayInFlight* flight) {
+    const char* const pool = pool_;  // a member would be loaded anew after each store
     List nodes{lists_[kNode]}, leaves{lists_[kLeaf]}, done{lists_[kDone]};
     for (int i = 0; i < kInFlight; ++i)
       if (start(flight[i])) *nodes.end++ = flight + i;
@@ -71,14 +72,20 @@ class Interleaved {
       // One step for every ray that stands before a node.
       RayInFlight **i = lists_[kNode], **end = nodes.end;
       nodes.end = lists_[kNode];
-      for (; i != end; ++i) append(**i, step(**i), nodes, leaves, done);
+      for (; i != end; ++i) {
+        RayInFlight& ray = **i;
+        append(pool, ray, step(pool, ray), nodes, leaves, done);
+      }
       if (nodes.end - lists_[kNode] > kFewNodes) continue;
 
       // Enough rays stand before a leaf: test, take it off the stack, and see where each goes next.
       visit_leaves(leaves.end);
       i = lists_[kLeaf], end = leaves.end;
       leaves.end = lists_[kLeaf];
-      for (; i != end; ++i) append(**i, (*i)->top - 1, nodes, leaves, done);
+      for (; i != end; ++i) {
+        RayInFlight& ray = **i;
+        append(pool, ray, ray.top - 1, nodes, leaves, done);
+      }
 
       // Hand out the answers of rays that are done, and start others in their place.
       i = lists_[kDone], end = done.end;
@@ -100,10 +107,11 @@ class Interleaved {
 
   /// Prefetches what is on top of the stack, and puts the ray on the list where it belongs: without a branch,
   /// on all three, of which one grows.
-  HWY_INLINE void append(RayInFlight& ray, std::int32_t* top, List& nodes, List& leaves, List& done) {
+  HWY_INLINE void append(const char* pool, RayInFlight& ray, std::int32_t* top, List& nodes, List& leaves,
+                         List& done) {
     ray.top = top;
     const auto next = static_cast<std::uint32_t>(*top);
-    prefetch_lines<Layout::kNodeLines>(node_at(pool_, next));
+    prefetch_lines<Layout::kNodeLines>(node_at(pool, next));
     *nodes.end = *leaves.end = *done.end = &ray;
     const std::uint32_t kind = next & 3;
     done.end += kind >> 1;
@@ -133,10 +141,10 @@ class Interleaved {
   }
 
   /// Puts the children that the ray enters in the place of the node on top.
-  HWY_INLINE std::int32_t* step(RayInFlight& ray) {
+  HWY_INLINE std::int32_t* step(const char* pool, RayInFlight& ray) {
     const DIW di;
     std::int32_t* top = ray.top;
-    const char* node = node_at(pool_, static_cast<std::uint32_t>(*top));
+    const char* node = node_at(pool, static_cast<std::uint32_t>(*top));
     const Slabs slabs = BoxRay<false>(ray.ray).template cross<Layout>(node, ray.hit.t);
     const std::int32_t* children = children_of<Layout>(node);
     const std::size_t count = hn::CountTrue(di, slabs.enters);

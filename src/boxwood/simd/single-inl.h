@@ -101,7 +101,11 @@ HWY_INLINE hn::Vec<D> as_children(D d, hn::Vec<DI4> v) {
   else if constexpr (kWidth == 8)
     return hn::ZeroExtendVector(d, v);
   else
+#if HWY_TARGET == HWY_AVX3
+    return hn::Vec<D>{_mm512_castsi128_si512(v.raw)};  // no instruction: nobody looks at the other lanes
+#else
     return hn::ZeroExtendVector(d, hn::ZeroExtendVector(hn::Half<D>(), v));
+#endif
 }
 
 /// Stores the references of the children that are entered, and their keys, the farthest first.
