@@ -41,38 +41,52 @@ float power_heuristic(float a, float b) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// Where the path stands, and how it got there:
-/// which part of the light that it may run into now is its own.
-struct Vertex {
-  Receiver place;  // the last point of the path
-  float pdf = 0;   // of the direction taken from there
+/// How many paths go on together: enough to keep the kernels full, few enough to stay in the nearer caches.
+constexpr std::size_t kPaths = 2048;
+
+/// What a path carries along beside its ray: one line of the cache.
+struct alignas(64) Path {
+  Path(Sampler own_sampler, std::uint32_t own_sample, float pixel_angle)
+      : sampler(own_sampler), sample(own_sample), cone_angle(pixel_angle) {}
+
+  Sampler sampler;
+  std::uint32_t sample;  // whose light it gathers
+  Vec3 throughput{1, 1, 1};
+  Vec3 absorption{0, 0, 0};  // of what the ray is in
+  float cone_width = 0, cone_angle;
+  float pdf = 0;  // of the direction that it took last
+  std::uint16_t bounce = 0, steps = 0;
   // Next-event estimation could not have found what this direction finds; true at the camera.
   bool is_perfect = true;
 };
+static_assert(sizeof(Path) == 64);
 
-/// A path on its way.
-struct Path {
-  Ray ray;
-  Sampler sampler;
-  Vec3 gathered{0, 0, 0}, throughput{1, 1, 1};
-  Vec3 absorption{0, 0, 0};  // of what the ray is in
-  Vertex last;
-  float cone_width = 0, cone_angle = 0;
-  int bounce = 0, steps = 0;
-};
-
-/// Has the processor fetch a path that is soon to be looked at.
-void prefetch_path([[maybe_unused]] const Path& path) {
+/// Has the processor fetch what is soon to be looked at.
+void prefetch([[maybe_unused]] const Path& path) {
 #if defined(__GNUC__)
-  constexpr std::size_t kLine = 64;
-  for (std::size_t at = 0; at < sizeof path; at += kLine)
-    __builtin_prefetch(reinterpret_cast<const char*>(&path) + at, 1);
+  __builtin_prefetch(&path, 1);
 #endif
 }
 
-/// Light that a path gets if nothing is in the way.
+/// Rays that are traced together, and whose they are.
+struct Front {
+  std::vector<Ray> rays;
+  std::vector<std::uint32_t> paths;
+
+  std::size_t size() const { return paths.size(); }
+  void add(const Ray& ray, std::uint32_t path) {
+    rays.push_back(ray);
+    paths.push_back(path);
+  }
+  void clear() {
+    rays.clear();
+    paths.clear();
+  }
+};
+
+/// Light that a sample gets if nothing is in the way.
 struct Pending {
-  std::uint32_t path;  // position among the paths
+  std::uint32_t sample;
   Vec3 light;
 };
 
@@ -120,70 +134,79 @@ class PathTracer final : public Integrator {
 
   void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers, std::span<float> out,
                    std::span<bool> is_counted, RayCounts& rays) const override {
-    std::vector<Path> paths;
-    paths.reserve(camera_rays.size());
-    for (std::size_t i = 0; i < camera_rays.size(); ++i) {
-      Path path{camera_rays[i], samplers[i]};
-      path.cone_angle = pixel_angle_;
-      paths.push_back(path);
-      is_counted[i] = true;
-    }
+    std::fill(out.begin(), out.end(), 0.0f);
+    std::fill(is_counted.begin(), is_counted.end(), true);
+    Batch batch(std::min(camera_rays.size(), kPaths), out);
+    for (std::size_t started = 0;;) {
+      // New paths take the places of those that have come to their end: batches stay full.
+      const std::size_t old_count = batch.front.size();
+      for (; started < camera_rays.size() && !batch.vacant.empty(); ++started) {
+        const std::uint32_t place = batch.vacant.back();
+        batch.vacant.pop_back();
+        batch.paths[place] = Path(samplers[started], static_cast<std::uint32_t>(started), pixel_angle_);
+        batch.front.add(camera_rays[started], place);
+      }
+      const std::size_t count = batch.front.size();
+      if (count == 0) break;
 
-    Batch batch(camera_rays.size());
-    std::vector<std::uint32_t>& on_their_way = batch.on_their_way;
-    bool is_first = true;
-    while (!on_their_way.empty()) {
-      // Find what each path hits.
-      const std::size_t count = on_their_way.size();
-      for (std::size_t i = 0; i < count; ++i) batch.rays[i] = paths[on_their_way[i]].ray;
-      scene_.closest_hit(std::span(batch.rays).first(count), std::span(batch.hits).first(count),
-                         &serial_executor());
-      (is_first ? rays.camera : rays.bounce) += count;
-      is_first = false;
+      // Find what each path hits. Rays of the camera go the same way, so they go apart from the others.
+      const std::span<const Ray> front_rays = batch.front.rays;
+      const std::span hits = std::span(batch.hits).first(count);
+      scene_.closest_hit(front_rays.first(old_count), hits.first(old_count), &serial_executor());
+      scene_.closest_hit(front_rays.subspan(old_count), hits.subspan(old_count), &serial_executor());
+      rays.bounce += old_count;
+      rays.camera += count - old_count;
 
       // Let each go on from there, material by material.
+      batch.next.clear();
       batch.pending.clear();
       batch.ways.clear();
       sort_by_material(batch, count);
       for (std::size_t k = 0; k < count; ++k) {
-        if (k + 2 * kAhead < count) prefetch_triangle(scene_, batch.hits[batch.order[k + 2 * kAhead]]);
+        if (k + 2 * kAhead < count) prefetch_triangle(scene_, hits[batch.order[k + 2 * kAhead]]);
         if (k + kAhead < count) {
           const std::uint32_t ahead = batch.order[k + kAhead];
-          prefetch_corners(scene_, batch.hits[ahead]);
-          prefetch_path(paths[on_their_way[ahead]]);
+          prefetch_corners(scene_, hits[ahead]);
+          prefetch(batch.paths[batch.front.paths[ahead]]);
         }
-        const std::uint32_t i = batch.order[k], path = on_their_way[i];
-        batch.goes_on[path] = arrive(paths[path], batch.hits[i], path, batch.step);
-        if (batch.step.count == kBlock || k + 1 == count) leave(paths, batch);
+        arrive(batch, batch.order[k]);
+        if (batch.step.count == kBlock || k + 1 == count) leave(batch);
       }
 
       // Find how much of the lights that they asked for is in sight.
       batch.transmittances.resize(batch.ways.size());
       shadows_.transmittances(batch.ways, batch.transmittances, rays);
       for (std::size_t i = 0; i < batch.pending.size(); ++i)
-        paths[batch.pending[i].path].gathered += batch.pending[i].light * batch.transmittances[i];
-
-      std::erase_if(on_their_way, [&](std::uint32_t path) { return batch.goes_on[path] == 0; });
+        batch.gather(batch.pending[i].sample, batch.pending[i].light * batch.transmittances[i]);
+      std::swap(batch.front, batch.next);
     }
-    for (std::size_t i = 0; i < paths.size(); ++i) store(out.subspan(3 * i, 3), paths[i].gathered);
   }
 
  private:
-  /// The memory of one step of all paths.
+  /// The memory of paths that go on together.
   struct Batch {
-    explicit Batch(std::size_t size)
-        : on_their_way(size), rays(size), hits(size), order(size), goes_on(size) {
-      std::iota(on_their_way.begin(), on_their_way.end(), 0u);
+    Batch(std::size_t size, std::span<float> gathered)
+        : paths(size, Path({0, 0}, 0, 0)), left_from(size), vacant(size), hits(size), order(size), out(gathered) {
+      std::iota(vacant.rbegin(), vacant.rend(), 0u);
       pending.reserve(size);
     }
-    std::vector<std::uint32_t> on_their_way;  // paths,
-    std::vector<Ray> rays;                    // their rays,
-    std::vector<Hit> hits;                    // what these hit,
-    std::vector<std::uint32_t> order;         // and in which order hits are looked at
-    std::vector<char> goes_on;                // by path
-    std::vector<Pending> pending;             // one for each ray towards a light,
-    std::vector<Shadows::Way> ways;           // and what it starts in
+    void gather(std::uint32_t sample, Vec3 light) {
+      float* sum = &out[3 * std::size_t(sample)];
+      sum[0] += light.x;
+      sum[1] += light.y;
+      sum[2] += light.z;
+    }
+
+    std::vector<Path> paths;            // each stays in its place
+    std::vector<Receiver> left_from;    // the last point of each
+    std::vector<std::uint32_t> vacant;  // places that no path has
+    Front front, next;                  // the rays of this step, and of the one after it
+    std::vector<Hit> hits;              // what the rays hit,
+    std::vector<std::uint32_t> order;   // and in which order hits are looked at
+    std::vector<Pending> pending;       // one for each ray towards a light,
+    std::vector<Shadows::Way> ways;     // and what it starts in
     std::vector<Vec3> transmittances;
+    std::span<float> out;  // the light of each sample
     Step step;
   };
 
@@ -199,25 +222,30 @@ class PathTracer final : public Integrator {
 
   std::size_t group_of(const Hit& hit) const { return hit ? group_of_instance_[hit.instance_id.value] : 0; }
 
-  /// Takes a path to what its ray hit. True where it goes straight on from there; otherwise it has come to
-  /// its end, unless it now is part of the step.
-  bool arrive(Path& path, const Hit& hit, std::uint32_t position, Step& step) const {
+  /// Takes a path to what its ray hit: it goes straight on from there, or becomes part of the step, or has
+  /// come to its end.
+  void arrive(Batch& batch, std::uint32_t position) const {
+    const Ray& ray = batch.front.rays[position];
+    const Hit& hit = batch.hits[position];
+    const std::uint32_t place = batch.front.paths[position];
+    Path& path = batch.paths[place];
+    Step& step = batch.step;
     if (max_component(path.absorption) > 0)
-      path.throughput *= beer(path.absorption, hit ? hit.t * length(path.ray.direction) : kInfinity);
+      path.throughput *= beer(path.absorption, hit ? hit.t * length(ray.direction) : kInfinity);
     if (!hit) {
-      path.gathered += path.throughput * background(path.ray.direction, path.last);
-      return false;
+      batch.gather(path.sample, path.throughput * background(ray.direction, path, batch.left_from[place]));
+      return finish(batch, place);
     }
     const SceneDesc& desc = scene_.description();
     const int point = step.count;
     Surface& surface = step.surfaces[point];
-    surface = surface_at(scene_, path.ray, hit);
+    surface = surface_at(scene_, ray, hit);
     path.cone_width += path.cone_angle * hit.t;
 
     MaterialId id = surface.material;
     const PreparedMaterial* prepared = &this->prepared(id);
-    if (prepared->is_emissive) gather_emission(path, hit, surface);
-    if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) return false;
+    if (prepared->is_emissive) gather_emission(batch, place, ray.direction, hit, surface);
+    if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) return finish(batch, place);
 
     // Which material it is, where it is several; and whether the light meets it at all.
     if (prepared->is_mix) {
@@ -228,9 +256,8 @@ class PathTracer final : public Integrator {
     if (prepared->is_see_through) {
       const float opacity = opacity_at(desc, material, surface.uv);
       if (opacity < 1 && (opacity <= 0 || !(path.sampler.next_1d() < opacity))) {
-        enter(path, material, surface, path.ray.direction);
-        path.ray = surface.spawn(path.ray.direction);
-        return true;
+        enter(path, material, surface, ray.direction);
+        return batch.next.add(surface.spawn(ray.direction), place);
       }
     }
 
@@ -238,7 +265,7 @@ class PathTracer final : public Integrator {
     const float uv_width = prepared->has_color_texture ? path.cone_width * uv_density(scene_, hit) : 0.0f;
     const Vec3 normal =
         prepared->has_normal_texture ? mapped_normal(scene_, hit, surface, material) : surface.shading_normal;
-    const Vec3 outgoing = -path.ray.direction;
+    const Vec3 outgoing = -ray.direction;
     const Vec3 color = prepared->is_plain ? base_color(desc, material, surface.uv, uv_width) : Vec3{0, 0, 0};
     // (A black base has no lobe.)
     step.is_plain[point] = max_component(color) > 0;
@@ -251,7 +278,7 @@ class PathTracer final : public Integrator {
       const Bsdf& bsdf = step.bsdfs[point].emplace(step.looks[point], surface, normal, outgoing);
       step.places.normal.set(point, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
     }
-    step.paths[point] = position;
+    step.paths[point] = place;
     step.materials[point] = &material;
     step.places.position.set(point, surface.position);
     step.leaving.position.set(point, surface.position);
@@ -259,11 +286,10 @@ class PathTracer final : public Integrator {
     step.leaving.clearance[point] = surface.clearance();
     step.draws.set(point, path.sampler);
     ++step.count;
-    return false;
   }
 
   /// Lets all paths of the step ask for light and go on. Leaves it empty.
-  void leave(std::vector<Path>& paths, Batch& batch) const {
+  void leave(Batch& batch) const {
     Step& step = batch.step;
     const int count = std::exchange(step.count, 0);
     if (count == 0) return;
@@ -284,14 +310,15 @@ class PathTracer final : public Integrator {
       step.plain.scatter(step.lights.direction, step.lobe_choices, step.directions);
 
     for (int i = 0; i < count; ++i) {
-      Path& path = paths[step.paths[i]];
-      if (step.has_spread(i) && step.lights.pdf[i] > 0) ask_for_light(path, step, i, batch);
-      batch.goes_on[step.paths[i]] = go_on(path, step, i);
+      if (step.has_spread(i) && step.lights.pdf[i] > 0) ask_for_light(batch, i);
+      if (!go_on(batch, i)) finish(batch, step.paths[i]);
     }
   }
 
   /// Goes on in a direction that the surface chooses. False at the path's end.
-  static bool go_on(Path& path, const Step& step, int i) {
+  static bool go_on(Batch& batch, int i) {
+    const Step& step = batch.step;
+    Path& path = batch.paths[step.paths[i]];
     const Surface& surface = step.surfaces[i];
     const std::optional<BsdfSample> next =
         step.is_plain[i] ? step.plain.next(i)
@@ -309,21 +336,27 @@ class PathTracer final : public Integrator {
     path.sampler.skip(static_cast<std::uint32_t>(drawn));
     if (!(max_component(path.throughput) > 0)) return false;
     if (next->is_transmission) enter(path, *step.materials[i], surface, next->direction);
-    path.last = {{step.places.position[i], step.places.normal[i]}, next->pdf, next->is_perfect};
+    batch.left_from[step.paths[i]] = {step.places.position[i], step.places.normal[i]};
+    path.pdf = next->pdf;
+    path.is_perfect = next->is_perfect;
     if (!next->is_perfect) path.cone_angle = max(path.cone_angle, kScatteredAngle);
-    path.ray = surface.spawn(next->direction);
     ++path.bounce;
+    batch.next.add(surface.spawn(next->direction), step.paths[i]);
     return true;
   }
 
+  static void finish(Batch& batch, std::uint32_t place) { batch.vacant.push_back(place); }
+
   /// Adds the light that the surface sends out itself, in so far as it is this way's to find.
-  void gather_emission(Path& path, const Hit& hit, const Surface& surface) const {
-    const Vec3 emission = lights_.emission(surface, path.ray.direction);
+  void gather_emission(Batch& batch, std::uint32_t place, Vec3 direction, const Hit& hit,
+                       const Surface& surface) const {
+    const Path& path = batch.paths[place];
+    const Vec3 emission = lights_.emission(surface, direction);
     if (!(max_component(emission) > 0)) return;
     float weight = 1;
-    if (!path.last.is_perfect)
-      weight = power_heuristic(path.last.pdf, lights_.pdf(hit, surface, path.ray.direction, path.last.place));
-    path.gathered += path.throughput * emission * weight;
+    if (!path.is_perfect)
+      weight = power_heuristic(path.pdf, lights_.pdf(hit, surface, direction, batch.left_from[place]));
+    batch.gather(path.sample, path.throughput * emission * weight);
   }
 
   /// Remembers what the path is in, on the other side of a surface.
@@ -332,16 +365,18 @@ class PathTracer final : public Integrator {
     path.absorption = dot(direction, surface.normal) < 0 ? material.absorption : material.outer_absorption;
   }
 
-  Vec3 background(Vec3 direction, const Vertex& last) const {
+  Vec3 background(Vec3 direction, const Path& path, const Receiver& from) const {
     Vec3 sum = lights_.dome(direction);
-    lights_.for_each_far_light(direction, last.place, [&](const Lights::FarLight& light) {
-      sum += light.radiance * (last.is_perfect ? 1 : power_heuristic(last.pdf, light.pdf));
+    lights_.for_each_far_light(direction, from, [&](const Lights::FarLight& light) {
+      sum += light.radiance * (path.is_perfect ? 1 : power_heuristic(path.pdf, light.pdf));
     });
     return sum;
   }
 
   /// Asks how much of the light that was tried is in sight.
-  static void ask_for_light(const Path& path, const Step& step, int i, Batch& batch) {
+  static void ask_for_light(Batch& batch, int i) {
+    const Step& step = batch.step;
+    const Path& path = batch.paths[step.paths[i]];
     const LightSamples& lights = step.lights;
     const BsdfValue toward =
         step.is_plain[i] ? step.plain.toward_light(i) : step.bsdfs[i]->evaluate(lights.direction[i]);
@@ -349,7 +384,7 @@ class PathTracer final : public Integrator {
     const float weight = lights.is_perfect[i] != 0 ? 1 : power_heuristic(lights.pdf[i], toward.pdf);
     batch.ways.push_back({lights.shadow_ray(i), path.absorption});
     batch.pending.push_back(
-        {step.paths[i], path.throughput * toward.value * lights.radiance[i] * (weight / lights.pdf[i])});
+        {path.sample, path.throughput * toward.value * lights.radiance[i] * (weight / lights.pdf[i])});
   }
 
   const PreparedMaterial& prepared(MaterialId id) const {
