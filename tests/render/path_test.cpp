@@ -409,7 +409,7 @@ TEST(Path, ManyRaysAtOnceSeeWhatEachSeesAlone) {
   const Scene scene(std::move(desc));
   const auto tracer = make_path_tracer(scene, Camera{});
   Random random(4);
-  constexpr std::size_t kCount = 300;
+  constexpr std::size_t kCount = 5000;  // more than go on together
   std::vector<Ray> rays;
   std::vector<Sampler> samplers;
   for (std::uint32_t i = 0; i < kCount; ++i) {

@@ -4,7 +4,7 @@
 // the numbers that its own sampler would give it (sampler.h).
 #pragma once
 
-#include "boxwood/render/block.h"
+#include "boxwood/core/block.h"
 #include "boxwood/render/sampler.h"
 
 namespace boxwood::render {

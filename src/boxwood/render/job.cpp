@@ -42,8 +42,8 @@ void work_here(RenderJob& job, std::span<const Task> tasks) {
   Executor& executor = job.options().executor ? *job.options().executor : default_executor();
   const auto threads = static_cast<std::size_t>(executor.concurrency());
   const std::size_t unit_samples = std::size_t(tasks[0].unit.count) * kTileSide * kTileSide;
-  const std::size_t group =
-      std::clamp<std::size_t>(kSamplesAtOnce / unit_samples, 1, std::max<std::size_t>(1, tasks.size() / (8 * threads)));
+  const std::size_t group = std::clamp<std::size_t>(kSamplesAtOnce / unit_samples, 1,
+                                                    std::max<std::size_t>(1, tasks.size() / (8 * threads)));
   parallel_for(executor, 0, (tasks.size() + group - 1) / group, 1, [&](std::size_t i) {
     if (job.is_stopped()) return;
     const std::span own = tasks.subspan(i * group, std::min(group, tasks.size() - i * group));
@@ -152,7 +152,8 @@ void RenderJob::add_up(const Unit& unit, std::size_t first, const Samples& sampl
     const std::size_t i = first + k, pixel = k / per_pixel;
     const bool is_counted = samples.is_counted[i];
     const std::span values = std::span(samples.values).subspan(i * channels, channels);
-    const std::span seen = std::span(samples.features).subspan(i * features_.channels(), features_.channels());
+    const std::span seen =
+        std::span(samples.features).subspan(i * features_.channels(), features_.channels());
     if ((is_counted && !all_finite(values)) || !all_finite(seen)) {
       ++result.dropped;
       continue;

@@ -5,8 +5,8 @@
 // children for one point, or over the points of a block for each child, and are vectors either way.
 #pragma once
 
+#include "boxwood/core/block.h"
 #include "boxwood/core/box.h"
-#include "boxwood/render/block.h"
 
 namespace boxwood::render {
 

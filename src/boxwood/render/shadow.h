@@ -5,8 +5,10 @@
 // there if it lets light through; all others only ask whether there is anything.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "boxwood/core/block.h"
 #include "boxwood/render/integrator.h"
 #include "boxwood/scene/scene.h"
 
@@ -19,23 +21,43 @@ inline Vec3 beer(Vec3 absorption, float distance) {
   return {left(absorption.x), left(absorption.y), left(absorption.z)};
 }
 
+/// Light on its way to samples. It arrives if nothing is in the way.
+class AwaitedLight {
+ public:
+  void clear();
+  /// Light that comes to `sample` along `ray`, through a medium of this absorption at the ray's start.
+  /// `may_meet_veil` is as Shadows::find_veiled() says.
+  void add(std::uint32_t sample, Vec3 light, const Ray& ray, Vec3 absorption, bool may_meet_veil);
+
+ private:
+  friend class Shadows;
+  struct Light {
+    std::uint32_t sample;
+    Vec3 light, absorption;
+  };
+  /// Rays that only ask whether there is anything, and those that look for the first surface.
+  std::vector<Ray> plain_, careful_;
+  std::vector<Light> plain_light_, careful_light_;
+  // Memory for the answers.
+  std::unique_ptr<bool[]> is_hidden_;
+  std::size_t hidden_size_ = 0;
+  std::vector<Hit> hits_;
+};
+
 class Shadows {
  public:
   /// Keeps a reference.
   explicit Shadows(const Scene& scene);
 
-  /// A question: how much light gets from one end of `ray` to the other, through a medium of this absorption
-  /// at its start?
-  struct Way {
-    Ray ray;
-    Vec3 absorption;
-  };
-  /// Answers many. Adds the rays it traced to `rays`.
-  void transmittances(std::span<const Way> ways, std::span<Vec3> out, RayCounts& rays) const;
+  /// Which rays of a block may meet something that lets light through.
+  void find_veiled(const RayBlock& rays, Integers& may_meet_veil) const;
+
+  /// Adds to the three floats that each sample has in `samples` what arrives, and to `rays` those that were
+  /// traced.
+  void deliver(AwaitedLight& light, std::span<float> samples, RayCounts& rays) const;
 
  private:
-  void find_veiled(std::span<const Way> ways, std::span<char> is_veiled) const;
-  Vec3 walk(const Way& way, const Hit& first_hit, RayCounts& rays) const;
+  Vec3 walk(const Ray& way, const Hit& first_hit, Vec3 absorption, RayCounts& rays) const;
 
   const Scene& scene_;
   float reach_ = 0;            // the largest coordinate in the scene
