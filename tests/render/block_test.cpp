@@ -211,11 +211,12 @@ TEST(Block, NoRayThatMeetsAVeilIsTakenForOneThatDoesNot) {
   const Scene scene(std::move(desc));
   const Shadows shadows(scene);
   Random random(7);
-  AwaitedLight light;
+  constexpr int kTrials = 20000;
+  AwaitedLight light(kTrials);
   RayBlock block;
   Integers may_meet_veil{};
   std::vector<float> expected;
-  for (int trial = 0; trial < 20000; ++trial) {
+  for (int trial = 0; trial < kTrials; ++trial) {
     Vec3 from =
         far + Vec3{4 * random.uniform() - 1, 3 * random.uniform() - 1.5f, 3 * random.uniform() - 1.5f};
     Vec3 to = far + Vec3{4 * random.uniform() - 1, 3 * random.uniform() - 1.5f, 3 * random.uniform() - 1.5f};

@@ -61,7 +61,7 @@ TEST(Shadows, FewVeilsAndMany) {
       block.set(i, {ways[i].from, 0, ways[i].to - ways[i].from, 1});
     Integers may_meet_veil;
     shadows.find_veiled(block, may_meet_veil);
-    AwaitedLight light;
+    AwaitedLight light(ways.size());
     for (std::uint32_t i = 0; i < ways.size(); ++i)
       light.add(i, splat(1), block[static_cast<int>(i)], ways[i].absorption, may_meet_veil[i] != 0);
     std::vector<float> arrived(3 * ways.size());

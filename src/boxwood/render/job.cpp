@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "boxwood/render/aov.h"
+#include "boxwood/render/draws.h"
 #include "boxwood/render/noise.h"
 #include "boxwood/render/path.h"
 #include "boxwood/render/picture.h"
@@ -125,21 +126,38 @@ std::vector<UnitResult> RenderJob::render(std::span<const Unit> units) const {
 /// Starts a ray for each sample of a unit. A picture of one sample takes the middle of each pixel.
 void RenderJob::start(const Unit& unit, Samples& samples) const {
   const TileArea area = film_.grid().area(unit.tile);
+  struct Start {
+    int x, y, sample;
+  };
+  std::array<Start, kBlock> starts;
+  Draws draws;
+  int count = 0;
+  const auto start_block = [&] {
+    draws.draw(2);
+    for (int i = 0; i < count; ++i) {
+      const auto [x, y, sample] = starts[i];
+      const FilterSample place = options_.samples > 1
+                                     ? filter_.sample(draws.pair(i, 0), static_cast<std::uint32_t>(sample))
+                                     : FilterSample{};
+      const Vec2 point{static_cast<float>(x) + 0.5f + place.offset.x,
+                       static_cast<float>(y) + 0.5f + place.offset.y};
+      samples.rays.push_back(lens_.ray(point, draws.pair(i, 1)));
+      samples.signs.push_back(place.sign);
+      samples.samplers[samples.samplers.size() - static_cast<std::size_t>(count - i)].skip(2);
+    }
+    count = 0;
+  };
   for (int y = area.y0; y < area.y1; ++y)
     for (int x = area.x0; x < area.x1; ++x)
       for (int s = unit.first; s < unit.first + unit.count; ++s) {
         const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options_.width) +
                            static_cast<std::uint32_t>(x);
-        Sampler sampler(pixel, static_cast<std::uint32_t>(s));
-        const Vec2 jitter = sampler.next_2d(), lens = sampler.next_2d();
-        const FilterSample place =
-            options_.samples > 1 ? filter_.sample(jitter, static_cast<std::uint32_t>(s)) : FilterSample{};
-        const Vec2 point{static_cast<float>(x) + 0.5f + place.offset.x,
-                         static_cast<float>(y) + 0.5f + place.offset.y};
-        samples.rays.push_back(lens_.ray(point, lens));
-        samples.samplers.push_back(sampler);
-        samples.signs.push_back(place.sign);
+        samples.samplers.emplace_back(pixel, static_cast<std::uint32_t>(s));
+        draws.set(count, samples.samplers.back());
+        starts[count++] = {x, y, s};
+        if (count == kBlock) start_block();
       }
+  start_block();
 }
 
 /// Adds up the samples of a unit, of which `first` is the first one. A sample that is not finite is left out

@@ -1,5 +1,7 @@
 #include "boxwood/render/next_rays.h"
 
+#include "boxwood/core/every_cpu.h"
+
 namespace boxwood::render {
 namespace {
 
@@ -13,9 +15,8 @@ constexpr float kMaxSurvival = 0.95f;
 
 void send_rays(const PathPoints& paths, const SurfaceBlock& surfaces, const Scattered& scattered,
                const LightSamples& lights, NextRays& out) {
-  const bool is_wide = has_avx2();
-  (is_wide ? avx2::ask_for_light : everywhere::ask_for_light)(paths, scattered, lights, out);
-  (is_wide ? avx2::go_on : everywhere::go_on)(paths, surfaces, scattered, out);
+  BOXWOOD_BEST(ask_for_light)(paths, scattered, lights, out);
+  BOXWOOD_BEST(go_on)(paths, surfaces, scattered, out);
 }
 
 }  // namespace boxwood::render

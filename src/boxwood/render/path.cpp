@@ -97,7 +97,7 @@ class PathTracer final : public Integrator {
       if (count == 0) break;
 
       // Find what each path hits. Rays of the camera go the same way, so they go apart from the others.
-      const std::span<const Ray> front_rays = batch.front.rays;
+      const std::span<const Ray> front_rays = batch.front.rays();
       const std::span hits = std::span(batch.hits).first(count);
       scene_.closest_hit(front_rays.first(old_count), hits.first(old_count), &serial_executor());
       scene_.closest_hit(front_rays.subspan(old_count), hits.subspan(old_count), &serial_executor());
@@ -122,7 +122,7 @@ class PathTracer final : public Integrator {
  private:
   /// The memory of one thread.
   struct Work {
-    Work(std::size_t size, std::span<float> samples) : batch(size), order(size), out(samples) {}
+    Work(std::size_t size, std::span<float> samples) : batch(size), order(size), light(size), out(samples) {}
     void gather(std::uint32_t sample, Vec3 light) {
       float* sum = &out[3 * std::size_t(sample)];
       sum[0] += light.x;
@@ -138,13 +138,17 @@ class PathTracer final : public Integrator {
   };
 
   /// Puts hits in an order in which equal materials follow each other: the processor then foresees branches
-  /// better. Instances stand for their materials. Misses come first; returns how many.
+  /// better. Instances stand for their materials. Misses come first; returns how many. Has the processor
+  /// fetch the triangles that were hit, on the way.
   std::size_t sort_by_material(std::span<const Hit> hits, std::span<std::uint32_t> order) const {
     std::array<std::uint32_t, kGroups + 1> first{};
     for (const Hit& hit : hits) ++first[group_of(hit) + 1];
     for (std::size_t group = 1; group < first.size(); ++group) first[group] += first[group - 1];
     const std::size_t misses = first[kMiss + 1];
-    for (std::uint32_t i = 0; const Hit& hit : hits) order[first[group_of(hit)]++] = i++;
+    for (std::uint32_t i = 0; const Hit& hit : hits) {
+      surfaces_.prefetch_triangle(hit);
+      order[first[group_of(hit)]++] = i++;
+    }
     return misses;
   }
 
@@ -154,9 +158,9 @@ class PathTracer final : public Integrator {
 
   /// A path leaves the scene.
   void escape(Work& work, std::uint32_t position) const {
-    const std::uint32_t place = work.batch.front.places[position];
+    const std::uint32_t place = work.batch.front.place(position);
     Path& path = work.batch[place];
-    const Vec3 direction = work.batch.front.rays[position].direction;
+    const Vec3 direction = work.batch.front.rays()[position].direction;
     if (max_component(path.absorption) > 0) path.throughput *= beer(path.absorption, kInfinity);
     work.gather(path.sample, path.throughput * background(direction, path, work.batch.left_from(place)));
     work.batch.end(place);
@@ -168,10 +172,14 @@ class PathTracer final : public Integrator {
     PathBatch& batch = work.batch;
     Step& step = work.step;
     const int count = static_cast<int>(positions.size());
-    surfaces_.read(batch.front.rays, batch.hits, positions, step.surfaces);
+    surfaces_.read(batch.front.rays(), batch.hits, positions, step.surfaces);
     bool is_any_plain = false;
     for (int i = 0; i < count; ++i) {
-      fetch(batch, ahead, i);
+      // The block that comes next, meanwhile, is fetched.
+      if (const auto k = static_cast<std::size_t>(i); k < ahead.size()) {
+        surfaces_.prefetch_corners(batch.hits[ahead[k]]);
+        batch.prefetch(batch.front.place(ahead[k]));
+      }
       step.kinds[i] = arrive(work, positions[i], i);
       is_any_plain |= step.kinds[i] == Step::Kind::plain;
     }
@@ -204,22 +212,12 @@ class PathTracer final : public Integrator {
       if (step.kinds[i] != Step::Kind::none) go_on(work, i);
   }
 
-  /// Has the processor fetch what the blocks that come next will want, while it works on the `i`-th point of
-  /// this one.
-  void fetch(const PathBatch& batch, std::span<const std::uint32_t> ahead, int i) const {
-    const auto next = static_cast<std::size_t>(i), later = next + kBlock;
-    if (later < ahead.size()) surfaces_.prefetch_triangle(batch.hits[ahead[later]]);
-    if (next >= ahead.size()) return;
-    surfaces_.prefetch_corners(batch.hits[ahead[next]]);
-    batch.prefetch(batch.front.places[ahead[next]]);
-  }
-
   /// Takes a path to what its ray hit, point `i` of the step.
   Step::Kind arrive(Work& work, std::uint32_t position, int i) const {
     using Kind = Step::Kind;
-    const Ray& ray = work.batch.front.rays[position];
+    const Ray& ray = work.batch.front.rays()[position];
     const Hit& hit = work.batch.hits[position];
-    const std::uint32_t place = work.batch.front.places[position];
+    const std::uint32_t place = work.batch.front.place(position);
     Path& path = work.batch[place];
     Step& step = work.step;
     const SceneDesc& desc = scene_.description();

@@ -33,26 +33,36 @@ struct alignas(64) Path {
 static_assert(sizeof(Path) == 64);
 
 /// Rays that are traced together, and the places of their paths.
-struct RayFront {
-  std::vector<Ray> rays;
-  std::vector<std::uint32_t> places;
+class RayRow {
+ public:
+  explicit RayRow(std::size_t capacity) : rays_(capacity), places_(capacity) {}
 
-  std::size_t size() const { return places.size(); }
+  std::size_t size() const { return size_; }
+  std::span<const Ray> rays() const { return std::span(rays_).first(size_); }
+  std::uint32_t place(std::size_t i) const { return places_[i]; }
+  void clear() { size_ = 0; }
+  /// Precondition: there is room.
   void add(const Ray& ray, std::uint32_t place) {
-    rays.push_back(ray);
-    places.push_back(place);
+    rays_[size_] = ray;
+    places_[size_++] = place;
   }
-  void clear() {
-    rays.clear();
-    places.clear();
-  }
+
+ private:
+  std::vector<Ray> rays_;
+  std::vector<std::uint32_t> places_;
+  std::size_t size_ = 0;
 };
 
 /// The paths.
 class PathBatch {
  public:
   explicit PathBatch(std::size_t size)
-      : hits(size), paths_(size, Path({0, 0}, 0, 0)), left_from_(size), vacant_(size) {
+      : front(size),
+        next(size),
+        hits(size),
+        paths_(size, Path({0, 0}, 0, 0)),
+        left_from_(size),
+        vacant_(size) {
     std::iota(vacant_.rbegin(), vacant_.rend(), 0u);
   }
 
@@ -76,7 +86,7 @@ class PathBatch {
 #endif
   }
 
-  RayFront front, next;   ///< The rays of this step, and of the one after it.
+  RayRow front, next;     ///< The rays of this step, and of the one after it.
   std::vector<Hit> hits;  ///< What those of this step hit.
 
  private:

@@ -1,5 +1,6 @@
 #include "boxwood/render/plain_block.h"
 
+#include "boxwood/core/every_cpu.h"
 #include "boxwood/render/fresnel.h"
 
 namespace boxwood::render {
@@ -46,7 +47,7 @@ void PlainBlock::set(int i, const PreparedMaterial& material, Vec3 color, Vec3 g
 }
 
 void PlainBlock::scatter(const Vec3s& toward_lights, const Floats& choices, const Vec2s& u, Scattered& out) {
-  const PlainKernels& loops = has_avx2() ? avx2::kKernels : everywhere::kKernels;
+  const PlainKernels& loops = BOXWOOD_BEST(kKernels);
   loops.prepare(points_);
   loops.evaluate(points_, toward_lights, out);
   loops.sample(points_, choices, u, out);

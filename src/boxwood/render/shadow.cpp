@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "boxwood/core/every_cpu.h"
 #include "boxwood/render/material.h"
 #include "boxwood/scene/surface.h"
 
@@ -76,22 +77,7 @@ Shadows::Shadows(const Scene& scene) : scene_(scene) {
 
 void Shadows::find_veiled(const RayBlock& rays, Integers& may_meet_veil) const {
   may_meet_veil.fill(0);
-  for (const Box3& veil : veils_)
-    (has_avx2() ? avx2::meet_boxes : everywhere::meet_boxes)(veil, reach_, rays, may_meet_veil);
-}
-
-void AwaitedLight::clear() {
-  plain_.clear();
-  plain_light_.clear();
-  careful_.clear();
-  careful_light_.clear();
-}
-
-void AwaitedLight::add(std::uint32_t sample, Vec3 light, const Ray& ray, Vec3 absorption,
-                       bool may_meet_veil) {
-  const bool is_careful = may_meet_veil || max_component(absorption) > 0;
-  (is_careful ? careful_ : plain_).push_back(ray);
-  (is_careful ? careful_light_ : plain_light_).push_back({sample, light, absorption});
+  for (const Box3& veil : veils_) BOXWOOD_BEST(meet_boxes)(veil, reach_, rays, may_meet_veil);
 }
 
 void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& rays) const {
@@ -102,22 +88,20 @@ void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& 
     sum[1] += arrived.y;
     sum[2] += arrived.z;
   };
-  if (light.hidden_size_ < light.plain_.size()) {
-    light.hidden_size_ = light.plain_.capacity();
-    light.is_hidden_.reset(new bool[light.hidden_size_]);
-  }
-  scene_.any_hit(light.plain_, {light.is_hidden_.get(), light.plain_.size()}, &serial_executor());
-  rays.shadow += light.plain_.size();
-  for (std::size_t i = 0; i < light.plain_.size(); ++i)
-    if (!light.is_hidden_[i]) add(light.plain_light_[i], {1, 1, 1});
+  const AwaitedLight::Row &plain = light.plain_, &careful = light.careful_;
+  scene_.any_hit(std::span(plain.rays).first(plain.size), {light.is_hidden_.get(), plain.size},
+                 &serial_executor());
+  rays.shadow += plain.size;
+  for (std::size_t i = 0; i < plain.size; ++i)
+    if (!light.is_hidden_[i]) add(plain.lights[i], {1, 1, 1});
 
-  light.hits_.resize(light.careful_.size());
-  scene_.closest_hit(light.careful_, light.hits_, &serial_executor());
-  rays.bounce += light.careful_.size();
-  for (std::size_t i = 0; i < light.careful_.size(); ++i) {
+  scene_.closest_hit(std::span(careful.rays).first(careful.size), std::span(light.hits_).first(careful.size),
+                     &serial_executor());
+  rays.bounce += careful.size;
+  for (std::size_t i = 0; i < careful.size; ++i) {
     const Hit& hit = light.hits_[i];
-    const Ray& ray = light.careful_[i];
-    const AwaitedLight::Light& to = light.careful_light_[i];
+    const Ray& ray = careful.rays[i];
+    const AwaitedLight::Light& to = careful.lights[i];
     if (!hit)
       add(to, beer(to.absorption, ray.t_max * length(ray.direction)));
     else if (is_veil_[hit.instance_id.value] != 0)

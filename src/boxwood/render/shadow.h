@@ -24,10 +24,17 @@ inline Vec3 beer(Vec3 absorption, float distance) {
 /// Light on its way to samples. It arrives if nothing is in the way.
 class AwaitedLight {
  public:
-  void clear();
+  /// Of so many rays at most.
+  explicit AwaitedLight(std::size_t capacity)
+      : plain_(capacity), careful_(capacity), is_hidden_(new bool[capacity]), hits_(capacity) {}
+
+  void clear() { plain_.size = careful_.size = 0; }
   /// Light that comes to `sample` along `ray`, through a medium of this absorption at the ray's start.
   /// `may_meet_veil` is as Shadows::find_veiled() says.
-  void add(std::uint32_t sample, Vec3 light, const Ray& ray, Vec3 absorption, bool may_meet_veil);
+  void add(std::uint32_t sample, Vec3 light, const Ray& ray, Vec3 absorption, bool may_meet_veil) {
+    (may_meet_veil || max_component(absorption) > 0 ? careful_ : plain_)
+        .add(ray, {sample, light, absorption});
+  }
 
  private:
   friend class Shadows;
@@ -35,12 +42,20 @@ class AwaitedLight {
     std::uint32_t sample;
     Vec3 light, absorption;
   };
+  struct Row {
+    explicit Row(std::size_t capacity) : rays(capacity), lights(capacity) {}
+    void add(const Ray& ray, const Light& light) {
+      rays[size] = ray;
+      lights[size++] = light;
+    }
+    std::vector<Ray> rays;
+    std::vector<Light> lights;
+    std::size_t size = 0;
+  };
   /// Rays that only ask whether there is anything, and those that look for the first surface.
-  std::vector<Ray> plain_, careful_;
-  std::vector<Light> plain_light_, careful_light_;
+  Row plain_, careful_;
   // Memory for the answers.
   std::unique_ptr<bool[]> is_hidden_;
-  std::size_t hidden_size_ = 0;
   std::vector<Hit> hits_;
 };
 

@@ -1,5 +1,6 @@
 #include "boxwood/scene/surface_block.h"
 
+#include "boxwood/core/every_cpu.h"
 #include "boxwood/scene/parts.h"
 #include "boxwood/scene/triangle_point.h"
 
@@ -85,7 +86,7 @@ void SurfaceReader::read(std::span<const Ray> rays, std::span<const Hit> hits,
       if (mesh.uvs != nullptr) corners.uvs[k].set(i, mesh.uvs[vertex]);
     }
   }
-  (has_avx2() ? avx2::place_block : everywhere::place_block)(corners, out);
+  BOXWOOD_BEST(place_block)(corners, out);
 
   // What the loop does not know, one by one.
   for (int i = 0; i < count && is_any_other; ++i) {
