@@ -224,7 +224,11 @@ TEST(Block, NoRayThatMeetsAVeilIsTakenForOneThatDoesNot) {
     if (trial % 4 <= 1) to.z = from.z;
     block.set(0, {from, 0, to - from, 1});
     shadows.find_veiled(block, may_meet_veil);
-    light.add(static_cast<std::uint32_t>(trial), splat(1), block[0], {0, 0, 0}, may_meet_veil[0] != 0);
+    const auto sample = static_cast<std::uint32_t>(trial);
+    if (may_meet_veil[0] != 0)
+      light.add_careful(sample, splat(1), block[0], {0, 0, 0});
+    else
+      light.add(sample, splat(1), block[0]);
     float share = 1;
     for (int i = 0; i < 3; ++i) {
       const float x = far.x + float(i);

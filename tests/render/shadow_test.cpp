@@ -62,8 +62,13 @@ TEST(Shadows, FewVeilsAndMany) {
     Integers may_meet_veil;
     shadows.find_veiled(block, may_meet_veil);
     AwaitedLight light(ways.size());
-    for (std::uint32_t i = 0; i < ways.size(); ++i)
-      light.add(i, splat(1), block[static_cast<int>(i)], ways[i].absorption, may_meet_veil[i] != 0);
+    for (std::uint32_t i = 0; i < ways.size(); ++i) {
+      const Ray ray = block[static_cast<int>(i)];
+      if (may_meet_veil[i] != 0 || max_component(ways[i].absorption) > 0)
+        light.add_careful(i, splat(1), ray, ways[i].absorption);
+      else
+        light.add(i, splat(1), ray);
+    }
     std::vector<float> arrived(3 * ways.size());
     RayCounts rays;
     shadows.deliver(light, arrived, rays);

@@ -95,11 +95,18 @@ UnitResult RenderJob::render(const Unit& unit) const {
 }
 
 std::vector<UnitResult> RenderJob::render(std::span<const Unit> units) const {
+  const auto size_of = [&](const Unit& unit) {
+    return film_.grid().area(unit.tile).pixel_count() * static_cast<std::size_t>(unit.count);
+  };
+  std::size_t count = 0;
+  for (const Unit& unit : units) count += size_of(unit);
   Samples samples;
+  samples.rays.reserve(count);
+  samples.samplers.reserve(count);
+  samples.signs.reserve(count);
   for (const Unit& unit : units) start(unit, samples);
 
   // See what they see, and what they hit.
-  const std::size_t count = samples.rays.size();
   samples.values.resize(count * static_cast<std::size_t>(integrator_->channels()));
   samples.is_counted.reset(new bool[count]);
   RayCounts rays;
@@ -117,7 +124,7 @@ std::vector<UnitResult> RenderJob::render(std::span<const Unit> units) const {
   for (const Unit& unit : units) {
     results.push_back({film_.empty_tile(unit.tile)});
     add_up(unit, first, samples, results.back());
-    first += film_.grid().area(unit.tile).pixel_count() * static_cast<std::size_t>(unit.count);
+    first += size_of(unit);
   }
   if (!results.empty()) results.front().rays = rays.total();
   return results;

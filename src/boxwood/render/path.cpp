@@ -33,6 +33,22 @@ constexpr float kScatteredAngle = 0.2f;
 /// How many paths go on together: enough to keep the kernels full, few enough to stay in the nearer caches.
 constexpr std::size_t kPaths = 2048;
 
+/// Some points of a block.
+class PointList {
+ public:
+  /// Puts `i` at the end, without a branch.
+  void add_if(int i, bool is_in) {
+    points_[size_] = static_cast<std::uint8_t>(i);
+    size_ += is_in;
+  }
+  const std::uint8_t* begin() const { return points_.data(); }
+  const std::uint8_t* end() const { return points_.data() + size_; }
+
+ private:
+  std::array<std::uint8_t, kBlock> points_;
+  std::size_t size_ = 0;
+};
+
 /// Hits of a block on their way through a step: where light may come from, and go on to.
 struct Step {
   /// What scatters light at a point; nothing where the path ended or went straight on.
@@ -51,7 +67,7 @@ struct Step {
   Floats light_choices{}, lobe_choices{};
   Vec2s light_points, directions;
   LightSamples lights;
-  Integers may_meet_veil{};
+  Integers may_meet_veil{}, is_in_medium{};
   Scattered scattered;
   NextRays next;
 
@@ -208,8 +224,25 @@ class PathTracer final : public Integrator {
     }
     shadows_.find_veiled(step.lights.shadow_rays, step.may_meet_veil);
     send_rays(step.paths, step.surfaces, step.scattered, step.lights, step.next);
-    for (int i = 0; i < count; ++i)
-      if (step.kinds[i] != Step::Kind::none) go_on(work, i);
+
+    // Send them out, one kind after the other: lists leave no branches to foresee.
+    PointList light, careful_light, onward, ending;
+    for (int i = 0; i < count; ++i) {
+      const bool is_live = step.kinds[i] != Step::Kind::none, asks = step.next.asks_for_light[i] != 0;
+      const bool is_careful = (step.may_meet_veil[i] | step.is_in_medium[i]) != 0;
+      light.add_if(i, is_live & asks & !is_careful);
+      careful_light.add_if(i, is_live & asks & is_careful);
+      onward.add_if(i, is_live & (step.next.goes_on[i] != 0));
+      ending.add_if(i, is_live & (step.next.goes_on[i] == 0));
+    }
+    for (const int i : light)
+      work.light.add(batch[step.places[i]].sample, step.next.light[i], step.lights.shadow_rays[i]);
+    for (const int i : careful_light) {
+      const Path& path = batch[step.places[i]];
+      work.light.add_careful(path.sample, step.next.light[i], step.lights.shadow_rays[i], path.absorption);
+    }
+    for (const int i : onward) go_on(batch, step, i);
+    for (const int i : ending) batch.end(step.places[i]);
   }
 
   /// Takes a path to what its ray hit, point `i` of the step.
@@ -255,17 +288,20 @@ class PathTracer final : public Integrator {
     step.materials[i] = &material;
     step.draws.set(i, path.sampler);
     step.paths.throughput.set(i, path.throughput);
+    step.is_in_medium[i] = max_component(path.absorption) > 0;
     step.paths.in_roulette[i] = path.bounce >= kRouletteAfter;
     const float uv_width = prepared->has_color_texture ? path.cone_width * step.surfaces.uv_density[i] : 0.0f;
     const Vec3 normal = prepared->has_normal_texture ? mapped_normal(scene_, hit, step.surfaces[i], material)
                                                      : step.surfaces.shading_normal[i];
     const Vec3 outgoing = -ray.direction;
-    const Vec3 color = prepared->is_plain ? base_color(desc, material, uv, uv_width) : Vec3{0, 0, 0};
+    const Vec3 color = !prepared->is_plain           ? Vec3{0, 0, 0}
+                       : prepared->has_color_texture ? base_color(desc, material, uv, uv_width)
+                                                     : prepared->color;
     // (A black base has no lobe.)
     if (max_component(color) > 0) {
       const Vec3 geometric = step.surfaces.normal[i];
       step.plain.set(i, *prepared, color, geometric, normal, outgoing);
-      step.receivers.normal.set(i, dot(geometric, outgoing) < 0 ? -geometric : geometric);
+      step.receivers.normal.set(i, geometric * (dot(geometric, outgoing) < 0 ? -1.0f : 1.0f));
       step.paths.is_spread[i] = 1;
       return Kind::plain;
     }
@@ -276,16 +312,10 @@ class PathTracer final : public Integrator {
     return Kind::other;
   }
 
-  /// Sends out the rays of point `i` of the step.
-  void go_on(Work& work, int i) const {
-    const Step& step = work.step;
+  /// The path of point `i` goes on.
+  static void go_on(PathBatch& batch, const Step& step, int i) {
     const std::uint32_t place = step.places[i];
-    Path& path = work.batch[place];
-    if (step.next.asks_for_light[i] != 0)
-      work.light.add(path.sample, step.next.light[i], step.lights.shadow_rays[i], path.absorption,
-                     step.may_meet_veil[i] != 0);
-    if (step.next.goes_on[i] == 0) return work.batch.end(place);
-
+    Path& path = batch[place];
     const Vec3 direction = step.scattered.direction[i];
     const bool is_perfect = step.scattered.is_perfect[i] != 0;
     if (step.scattered.is_transmission[i] != 0)
@@ -296,8 +326,8 @@ class PathTracer final : public Integrator {
     path.is_perfect = is_perfect;
     if (!is_perfect) path.cone_angle = max(path.cone_angle, kScatteredAngle);
     ++path.bounce;
-    work.batch.left_from(place) = {step.receivers.position[i], step.receivers.normal[i]};
-    work.batch.next.add({step.next.origin[i], 0, direction, kInfinity}, place);
+    batch.left_from(place) = {step.receivers.position[i], step.receivers.normal[i]};
+    batch.next.add({step.next.origin[i], 0, direction, kInfinity}, place);
   }
 
   /// Adds the light that the surface sends out itself, in so far as it is this way's to find.

@@ -103,9 +103,9 @@ void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& 
     const Ray& ray = careful.rays[i];
     const AwaitedLight::Light& to = careful.lights[i];
     if (!hit)
-      add(to, beer(to.absorption, ray.t_max * length(ray.direction)));
+      add(to, beer(light.absorption_[i], ray.t_max * length(ray.direction)));
     else if (is_veil_[hit.instance_id.value] != 0)
-      add(to, walk(ray, hit, to.absorption, rays));
+      add(to, walk(ray, hit, light.absorption_[i], rays));
   }
 }
 

@@ -26,21 +26,27 @@ class AwaitedLight {
  public:
   /// Of so many rays at most.
   explicit AwaitedLight(std::size_t capacity)
-      : plain_(capacity), careful_(capacity), is_hidden_(new bool[capacity]), hits_(capacity) {}
+      : plain_(capacity),
+        careful_(capacity),
+        absorption_(capacity),
+        is_hidden_(new bool[capacity]),
+        hits_(capacity) {}
 
   void clear() { plain_.size = careful_.size = 0; }
-  /// Light that comes to `sample` along `ray`, through a medium of this absorption at the ray's start.
-  /// `may_meet_veil` is as Shadows::find_veiled() says.
-  void add(std::uint32_t sample, Vec3 light, const Ray& ray, Vec3 absorption, bool may_meet_veil) {
-    (may_meet_veil || max_component(absorption) > 0 ? careful_ : plain_)
-        .add(ray, {sample, light, absorption});
+  /// Light that comes to `sample` along `ray`, which meets no veil (Shadows::find_veiled) and is in no
+  /// medium.
+  void add(std::uint32_t sample, Vec3 light, const Ray& ray) { plain_.add(ray, {sample, light}); }
+  /// The same along a ray of which this is not known, through a medium of this absorption at its start.
+  void add_careful(std::uint32_t sample, Vec3 light, const Ray& ray, Vec3 absorption) {
+    absorption_[careful_.size] = absorption;
+    careful_.add(ray, {sample, light});
   }
 
  private:
   friend class Shadows;
   struct Light {
     std::uint32_t sample;
-    Vec3 light, absorption;
+    Vec3 light;
   };
   struct Row {
     explicit Row(std::size_t capacity) : rays(capacity), lights(capacity) {}
@@ -54,6 +60,7 @@ class AwaitedLight {
   };
   /// Rays that only ask whether there is anything, and those that look for the first surface.
   Row plain_, careful_;
+  std::vector<Vec3> absorption_;  // of the latter
   // Memory for the answers.
   std::unique_ptr<bool[]> is_hidden_;
   std::vector<Hit> hits_;
