@@ -136,7 +136,7 @@ class PathTracer final : public Integrator {
   }
 
  private:
-  /// The memory of one thread.
+  /// The memory of one call.
   struct Work {
     Work(std::size_t size, std::span<float> samples) : batch(size), order(size), light(size), out(samples) {}
     void gather(std::uint32_t sample, Vec3 light) {
