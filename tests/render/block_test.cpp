@@ -1,5 +1,5 @@
 // block_test.cpp: do many points at once get what each gets alone, bit for bit?
-#include "boxwood/render/block.h"
+#include "boxwood/core/block.h"
 
 #include <gtest/gtest.h>
 
@@ -92,29 +92,27 @@ TEST(Block, LightsAreThoseThatEachPointTries) {
         int found_any = 0;
         for (int trial = 0; trial < 40; ++trial) {
           // A block that is not full.
-          std::vector<Surface> surfaces(trial == 0 ? 1 : kBlock - trial % 3);
+          const int count = trial == 0 ? 1 : kBlock - trial % 3;
+          SurfaceBlock surfaces;
           Receivers from;
-          Leaving leaving;
           Floats choices{};
           Vec2s u;
           std::vector<float> choice_of;
-          for (int i = 0; i < static_cast<int>(surfaces.size()); ++i) {
-            Surface& surface = surfaces[i];
+          for (int i = 0; i < count; ++i) {
+            Surface surface;
             surface.position = random.direction() * 5 + Vec3{0, 4, 0};
             surface.error = abs(surface.position) * 1e-6f;
             surface.normal = surface.shading_normal = random.direction();
             from.position.set(i, surface.position);
             from.normal.set(i, i % 5 == 0 ? Vec3{0, 0, 0} : i % 2 == 0 ? -surface.normal : surface.normal);
-            leaving.position.set(i, surface.position);
-            leaving.normal.set(i, surface.normal);
-            leaving.clearance[i] = surface.clearance();
+            surfaces.set(i, surface);
             choices[i] = random.uniform();
             choice_of.push_back(choices[i]);
             u.set(i, {random.uniform(), random.uniform()});
           }
           LightSamples found;
-          lights.sample(surfaces, from, leaving, choices, u, found);
-          for (int i = 0; i < static_cast<int>(surfaces.size()); ++i) {
+          lights.sample(surfaces, count, from, choices, u, found);
+          for (int i = 0; i < count; ++i) {
             const auto expected = lights.sample(surfaces[i], from.normal[i], choice_of[i], u[i]);
             ASSERT_EQ(found.pdf[i] > 0, expected.has_value()) << i;
             if (!expected) continue;
@@ -123,9 +121,9 @@ TEST(Block, LightsAreThoseThatEachPointTries) {
             EXPECT_EQ(found.direction[i], expected->direction);
             EXPECT_EQ(found.radiance[i], expected->radiance);
             EXPECT_EQ(found.is_perfect[i] != 0, expected->is_perfect);
-            EXPECT_EQ(found.shadow_ray(i).origin, expected->shadow_ray.origin);
-            EXPECT_EQ(found.shadow_ray(i).direction, expected->shadow_ray.direction);
-            EXPECT_EQ(found.shadow_ray(i).t_max, expected->shadow_ray.t_max);
+            EXPECT_EQ(found.shadow_rays[i].origin, expected->shadow_ray.origin);
+            EXPECT_EQ(found.shadow_rays[i].direction, expected->shadow_ray.direction);
+            EXPECT_EQ(found.shadow_rays[i].t_max, expected->shadow_ray.t_max);
           }
         }
         if (squares + with_others + with_far > 0) {
@@ -166,17 +164,18 @@ TEST(Block, PlainSurfacesScatterAsABsdfDoes) {
       const Vec3 outgoing = random.direction();
       looks[i] = look_at(SceneDesc{}, materials[k], prepared[k], {0, 0});
       bsdfs.emplace_back(looks[i], surfaces[i], normal, outgoing);
-      block.set(i, prepared[k], looks[i].color, surfaces[i], normal, outgoing);
+      block.set(i, prepared[k], looks[i].color, surfaces[i].normal, normal, outgoing);
       towards.set(i, random.direction());
       choices[i] = random.uniform();
       u.set(i, {random.uniform(), i == 0 ? 0.0f : random.uniform()});
     }
-    block.scatter(towards, choices, u);
+    Scattered scattered;
+    block.scatter(towards, choices, u, scattered);
     for (int i = 0; i < kBlock; ++i) {
       const BsdfValue value = bsdfs[i].evaluate(towards[i]);
-      EXPECT_EQ(block.toward_light(i).value, value.value);
-      EXPECT_EQ(block.toward_light(i).pdf, value.pdf);
-      const auto expected = bsdfs[i].sample(choices[i], u[i]), found = block.next(i);
+      EXPECT_EQ(scattered.toward_light(i).value, value.value);
+      EXPECT_EQ(scattered.toward_light(i).pdf, value.pdf);
+      const auto expected = bsdfs[i].sample(choices[i], u[i]), found = scattered.next(i);
       ASSERT_EQ(found.has_value(), expected.has_value());
       if (!expected) continue;
       ++reflected;
@@ -212,15 +211,24 @@ TEST(Block, NoRayThatMeetsAVeilIsTakenForOneThatDoesNot) {
   const Scene scene(std::move(desc));
   const Shadows shadows(scene);
   Random random(7);
-  std::vector<Shadows::Way> ways;
+  constexpr int kTrials = 20000;
+  AwaitedLight light(kTrials);
+  RayBlock block;
+  Integers may_meet_veil{};
   std::vector<float> expected;
-  for (int trial = 0; trial < 20000; ++trial) {
+  for (int trial = 0; trial < kTrials; ++trial) {
     Vec3 from =
         far + Vec3{4 * random.uniform() - 1, 3 * random.uniform() - 1.5f, 3 * random.uniform() - 1.5f};
     Vec3 to = far + Vec3{4 * random.uniform() - 1, 3 * random.uniform() - 1.5f, 3 * random.uniform() - 1.5f};
     if (trial % 4 == 0) to.y = from.y;
     if (trial % 4 <= 1) to.z = from.z;
-    ways.push_back({{from, 0, to - from, 1}, {}});
+    block.set(0, {from, 0, to - from, 1});
+    shadows.find_veiled(block, may_meet_veil);
+    const auto sample = static_cast<std::uint32_t>(trial);
+    if (may_meet_veil[0] != 0)
+      light.add_careful(sample, splat(1), block[0], {0, 0, 0});
+    else
+      light.add(sample, splat(1), block[0]);
     float share = 1;
     for (int i = 0; i < 3; ++i) {
       const float x = far.x + float(i);
@@ -233,12 +241,12 @@ TEST(Block, NoRayThatMeetsAVeilIsTakenForOneThatDoesNot) {
     }
     expected.push_back(share);
   }
-  std::vector<Vec3> found(ways.size());
+  std::vector<float> found(3 * expected.size());
   RayCounts rays;
-  shadows.transmittances(ways, found, rays);
-  for (std::size_t i = 0; i < ways.size(); ++i)
+  shadows.deliver(light, found, rays);
+  for (std::size_t i = 0; i < expected.size(); ++i)
     if (expected[i] > 0) {
-      EXPECT_EQ(found[i].x, expected[i]) << i;
+      EXPECT_EQ(found[3 * i], expected[i]) << i;
     }
   EXPECT_GT(rays.shadow, 1000u);  // those that cannot meet one are not asked twice
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "boxwood/render/path.h"
+#include "boxwood/render/warp.h"
 #include "boxwood/scene/scene.h"
 
 namespace boxwood::render {
@@ -44,6 +45,22 @@ inline Material lamp(float radiance, bool from_both_sides = false) {
   material.emission = splat(radiance);
   material.emits_from_both_sides = from_both_sides;
   return material;
+}
+
+/// A large matte floor, seen straight from above at the origin, under whatever `add` puts over it.
+template <class Add>
+float floor_radiance(const Add& add, int samples, Vec3 from = {0.01f, 0.5f, 0.02f}) {
+  SceneDesc desc;
+  const MaterialId matte = desc.add(material_of_kind(Material::Kind::matte, splat(0.5f)));
+  desc.add(std::vector<Quad>{{{-50, 0, -50}, {-50, 0, 50}, {50, 0, 50}, {50, 0, -50}}}, matte);
+  add(desc);
+  const Scene scene(std::move(desc));
+  return mean_radiance(scene, Ray{from, 0, normalize(-from)}, samples).x;
+}
+
+/// Radiance of the floor above for a known irradiance.
+inline float lambert(float irradiance) {
+  return 0.5f * irradiance / kPi;
 }
 
 }  // namespace boxwood::render

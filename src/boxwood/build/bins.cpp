@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "boxwood/build/morton_order.h"
+#include "boxwood/core/every_cpu.h"
 
 namespace boxwood {
 
@@ -18,7 +19,7 @@ Histogram::Histogram(int bin_count) : bins(bin_count) {
 }
 
 const BinKernels& bin_kernels() {
-  return has_avx2() ? avx2::kKernels : everywhere::kKernels;
+  return BOXWOOD_BEST(kKernels);
 }
 
 }  // namespace boxwood

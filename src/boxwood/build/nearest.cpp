@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "boxwood/core/every_cpu.h"
+
 namespace boxwood {
 namespace {
 
@@ -37,7 +39,7 @@ constexpr std::array<LowBits, 16> kLowBits = make_low_bits();
 #include "boxwood/core/every_cpu-inl.h"
 
 void find_nearest(const BoxRow& row, const Scale& scale, std::uint16_t* partner) {
-  (has_avx2() ? avx2::find_nearest : everywhere::find_nearest)(row, scale.factor(), partner);
+  BOXWOOD_BEST(find_nearest)(row, scale.factor(), partner);
 }
 
 }  // namespace boxwood

@@ -88,7 +88,19 @@ class CachedPicture final : public PictureSource {
   int levels() const override { return levels_; }
 
   std::array<float, 4> texel(int level, int x, int y) const override {
-    const TileMemo::Tile& tile = this->tile(level, x / kTileSide, y / kTileSide);
+    return texel_of(tile(level, x / kTileSide, y / kTileSide), x, y);
+  }
+
+  std::array<std::array<float, 4>, 4> texels(int level, int x0, int x1, int y0, int y1) const override {
+    const int column = x0 / kTileSide, row = y0 / kTileSide;
+    if (x1 / kTileSide != column || y1 / kTileSide != row)
+      return PictureSource::texels(level, x0, x1, y0, y1);
+    const TileMemo::Tile& tile = this->tile(level, column, row);
+    return {texel_of(tile, x0, y0), texel_of(tile, x1, y0), texel_of(tile, x0, y1), texel_of(tile, x1, y1)};
+  }
+
+ private:
+  std::array<float, 4> texel_of(const TileMemo::Tile& tile, int x, int y) const {
     const std::size_t at = 4 * (std::size_t(y % kTileSide) * kTileSide + x % kTileSide);
     if (!has_bytes_) return {tile.floats[at], tile.floats[at + 1], tile.floats[at + 2], tile.floats[at + 3]};
     const std::uint8_t* p = &tile.bytes[at];
@@ -96,7 +108,6 @@ class CachedPicture final : public PictureSource {
     return {p[0] * kUnit, p[1] * kUnit, p[2] * kUnit, p[3] * kUnit};
   }
 
- private:
   const TileMemo::Tile& tile(int level, int x, int y) const {
     static thread_local TileMemo memo;
     const std::size_t slot =

@@ -83,6 +83,8 @@ float AlbedoRow::missing_density(float cosine) const {
 
 AlbedoTable::AlbedoTable(Lobe lobe, float eta, float alpha) : rows_(alpha < 0 ? kWidths : 1) {
   const int samples = alpha < 0 ? kFewerSamples : kSamples;
+  std::vector<Vec2> points;
+  for (int s = 0; s < samples; ++s) points.push_back(Sampler(0, static_cast<std::uint32_t>(s)).next_2d());
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const float x = static_cast<float>(r) / (kWidths - 1);
     const float width = max(alpha < 0 ? x * x : alpha, kLeastAlpha);
@@ -92,10 +94,7 @@ AlbedoTable::AlbedoTable(Lobe lobe, float eta, float alpha) : rows_(alpha < 0 ? 
       const float cosine = max(root * root, 1e-4f);
       const Vec3 outgoing{std::sqrt(max(0.0f, 1 - cosine * cosine)), 0, cosine};
       double sum = 0;
-      for (int s = 0; s < samples; ++s) {
-        Sampler sampler(0, static_cast<std::uint32_t>(s));
-        sum += weight(lobe, eta, width, outgoing, sampler.next_2d());
-      }
+      for (const Vec2 u : points) sum += weight(lobe, eta, width, outgoing, u);
       row.values_[i] = static_cast<float>(sum / samples);
     }
     row.finish();

@@ -4,7 +4,7 @@
 // the numbers that its own sampler would give it (sampler.h).
 #pragma once
 
-#include "boxwood/render/block.h"
+#include "boxwood/core/block.h"
 #include "boxwood/render/sampler.h"
 
 namespace boxwood::render {
@@ -19,8 +19,8 @@ class Draws {
     reversed_index_[i] = sampler.reversed_index_;
     dimension_[i] = sampler.dimension_;
   }
-  /// Works out the next kAhead draws of all points.
-  void draw();
+  /// Works out the next `count` draws of all points.
+  void draw(int count = kAhead);
 
   /// What the `k`-th of these would be.
   Vec2 pair(int i, int k) const { return pairs_[k][i]; }

@@ -65,17 +65,16 @@ inline void add_exactly(std::span<Digits> sums, std::uint8_t& upper_place, std::
   for (const float value : values) largest = place_of(value) > largest ? place_of(value) : largest;
   lift(sums, upper_place, largest);
   for (std::size_t i = 0; i < sums.size(); ++i) {
+    // Without branches: light is as often above 1 as below, which is where places meet.
     const int place = place_of(values[i]);
-    if (place < upper_place - 1) continue;
     const double value = values[i];
     const std::int64_t first = nearest_whole(value * per_unit_at(place));
-    if (place < upper_place) {
-      sums[i].lower += sign * first;
-    } else {
-      const double rest = value - static_cast<double>(first) * unit_at(place);
-      sums[i].upper += sign * first;
-      sums[i].lower += sign * static_cast<std::int64_t>(rest * per_unit_at(place - 1));
-    }
+    const double rest = value - static_cast<double>(first) * unit_at(place);
+    const auto second = static_cast<std::int64_t>(rest * per_unit_at(place - 1));
+    const std::int64_t is_upper = -std::int64_t(place == upper_place);
+    const std::int64_t is_lower = -std::int64_t(place == upper_place - 1);
+    sums[i].upper += sign * (first & is_upper);
+    sums[i].lower += sign * ((first & is_lower) | (second & is_upper));
   }
 }
 

@@ -3,7 +3,7 @@
 // Included once for each instruction set, in a namespace of its own; no include guard.
 
 inline void sample_flat_block(const FlatLight* __restrict lights, const Integers& index,
-                              const Floats& probability, const Leaving& from, const Vec2s& u,
+                              const Floats& probability, const SurfaceBlock& from, const Vec2s& u,
                               LightSamples& __restrict out) {
   for (int i = 0; i < kBlock; ++i) {
     const FlatLight& light = lights[index[i]];
@@ -33,9 +33,9 @@ inline void sample_flat_block(const FlatLight* __restrict lights, const Integers
     const Vec3 way = end - origin;
     out.direction.set(i, direction);
     out.radiance.set(i, light.radiance);
-    out.shadow_origin.set(i, origin);
-    out.shadow_direction.set(i, way);
-    out.shadow_end[i] = 1;
+    out.shadow_rays.origin.set(i, origin);
+    out.shadow_rays.direction.set(i, way);
+    out.shadow_rays.t_max[i] = 1;
     out.is_perfect[i] = 0;
   }
 }

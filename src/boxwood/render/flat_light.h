@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "boxwood/render/light_sample.h"
+#include "boxwood/scene/surface_block.h"
 
 namespace boxwood::render {
 
@@ -21,14 +22,9 @@ struct FlatLight {
   float is_two_sided = 0;  ///< 1, or 0.
 };
 
-/// Points on surfaces that rays leave from.
-struct Leaving {
-  Vec3s position, normal;
-  Floats clearance{};  ///< As Surface::clearance().
-};
-
 /// Each point tries the light of its index, chosen with its probability, at the point that `u` picks.
 void sample_flat_lights(const std::vector<FlatLight>& lights, const Integers& index,
-                        const Floats& probability, const Leaving& from, const Vec2s& u, LightSamples& out);
+                        const Floats& probability, const SurfaceBlock& from, const Vec2s& u,
+                        LightSamples& out);
 
 }  // namespace boxwood::render

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "boxwood/render/aov.h"
+#include "boxwood/render/draws.h"
 #include "boxwood/render/noise.h"
 #include "boxwood/render/path.h"
 #include "boxwood/render/picture.h"
@@ -16,6 +17,8 @@ namespace {
 constexpr int kLeastToSettle = 2 * kLeastForNoise;
 // Tasks that are handed out together; only very large pictures have more in a round.
 constexpr std::size_t kMaxTasks = 1 << 20;
+// So many samples keep batches of paths full but for a small part of the time, at the end.
+constexpr std::size_t kSamplesAtOnce = 1 << 14;
 
 const RenderOptions& checked(const RenderOptions& options) {
   check(options);
@@ -33,28 +36,24 @@ int share_end(const RenderOptions& options, int index) {
   return static_cast<int>(std::int64_t(options.samples) * index / options.shard.count);
 }
 
-/// Threads of one machine, by an executor.
+/// Threads of one machine, by an executor. Each takes several units at a time, so that many paths go on
+/// together, but not so many that some threads run out of work long before the others.
 void work_here(RenderJob& job, std::span<const Task> tasks) {
+  if (tasks.empty()) return;
   Executor& executor = job.options().executor ? *job.options().executor : default_executor();
-  parallel_for(executor, 0, tasks.size(), 1, [&](std::size_t i) {
-    if (!job.is_stopped()) job.add(tasks[i], job.render(tasks[i].unit));
+  const auto threads = static_cast<std::size_t>(executor.concurrency());
+  const std::size_t unit_samples = std::size_t(tasks[0].unit.count) * kTileSide * kTileSide;
+  const std::size_t group = std::clamp<std::size_t>(kSamplesAtOnce / unit_samples, 1,
+                                                    std::max<std::size_t>(1, tasks.size() / (8 * threads)));
+  parallel_for(executor, 0, (tasks.size() + group - 1) / group, 1, [&](std::size_t i) {
+    if (job.is_stopped()) return;
+    const std::span own = tasks.subspan(i * group, std::min(group, tasks.size() - i * group));
+    std::vector<Unit> units;
+    for (const Task& task : own) units.push_back(task.unit);
+    const std::vector<UnitResult> results = job.render(units);
+    for (std::size_t k = 0; k < own.size(); ++k) job.add(own[k], results[k]);
   });
 }
-
-/// The samples of a unit on their way.
-struct Batch {
-  Batch(std::size_t size, std::size_t channels) : values(size * channels), is_counted(new bool[size]) {
-    rays.reserve(size);
-    samplers.reserve(size);
-    signs.reserve(size);
-  }
-
-  std::vector<Ray> rays;
-  std::vector<Sampler> samplers;  // have drawn what the camera needed
-  std::vector<int> signs;         // from the filter
-  std::vector<float> values;
-  std::unique_ptr<bool[]> is_counted;
-};
 
 bool all_finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
@@ -78,72 +77,130 @@ RenderJob::RenderJob(const Scene& scene, const RenderOptions& options)
       round_{first_sample_, first_sample_},
       is_settled_(film_.grid().size()) {}
 
-UnitResult RenderJob::render(const Unit& unit) const {
-  const TileArea area = film_.grid().area(unit.tile);
-  const auto samples = static_cast<std::size_t>(unit.count);
-  const auto channels = static_cast<std::size_t>(integrator_->channels());
-  Batch batch(area.pixel_count() * samples, channels);
+/// Samples of units on their way.
+struct RenderJob::Samples {
+  std::vector<Ray> rays;
+  std::vector<Sampler> samplers;  // have drawn what the camera needed
+  std::vector<int> signs;         // from the filter
+  // What they see,
+  std::vector<float> values;
+  std::unique_ptr<bool[]> is_counted;
+  // and what they hit.
+  std::vector<float> features;
+  std::unique_ptr<bool[]> is_hit;
+};
 
-  // Start a ray for each sample. A picture of one sample takes the middle of each pixel.
+UnitResult RenderJob::render(const Unit& unit) const {
+  return std::move(render(std::span(&unit, 1)).front());
+}
+
+std::vector<UnitResult> RenderJob::render(std::span<const Unit> units) const {
+  const auto size_of = [&](const Unit& unit) {
+    return film_.grid().area(unit.tile).pixel_count() * static_cast<std::size_t>(unit.count);
+  };
+  std::size_t count = 0;
+  for (const Unit& unit : units) count += size_of(unit);
+  Samples samples;
+  samples.rays.reserve(count);
+  samples.samplers.reserve(count);
+  samples.signs.reserve(count);
+  for (const Unit& unit : units) start(unit, samples);
+
+  // See what they see, and what they hit.
+  samples.values.resize(count * static_cast<std::size_t>(integrator_->channels()));
+  samples.is_counted.reset(new bool[count]);
+  RayCounts rays;
+  integrator_->sample_many(samples.rays, samples.samplers, samples.values, {samples.is_counted.get(), count},
+                           rays);
+  samples.features.resize(count * features_.channels());
+  if (!features_.layers().empty()) {
+    samples.is_hit.reset(new bool[count]);
+    features_.look(samples.rays, samples.features, {samples.is_hit.get(), count});
+    rays.camera += count;
+  }
+
+  std::vector<UnitResult> results;
+  std::size_t first = 0;
+  for (const Unit& unit : units) {
+    results.push_back({film_.empty_tile(unit.tile)});
+    add_up(unit, first, samples, results.back());
+    first += size_of(unit);
+  }
+  if (!results.empty()) results.front().rays = rays.total();
+  return results;
+}
+
+/// Starts a ray for each sample of a unit. A picture of one sample takes the middle of each pixel.
+void RenderJob::start(const Unit& unit, Samples& samples) const {
+  const TileArea area = film_.grid().area(unit.tile);
+  struct Start {
+    int x, y, sample;
+  };
+  std::array<Start, kBlock> starts;
+  Draws draws;
+  int count = 0;
+  const auto start_block = [&] {
+    draws.draw(2);
+    for (int i = 0; i < count; ++i) {
+      const auto [x, y, sample] = starts[i];
+      const FilterSample place = options_.samples > 1
+                                     ? filter_.sample(draws.pair(i, 0), static_cast<std::uint32_t>(sample))
+                                     : FilterSample{};
+      const Vec2 point{static_cast<float>(x) + 0.5f + place.offset.x,
+                       static_cast<float>(y) + 0.5f + place.offset.y};
+      samples.rays.push_back(lens_.ray(point, draws.pair(i, 1)));
+      samples.signs.push_back(place.sign);
+      samples.samplers[samples.samplers.size() - static_cast<std::size_t>(count - i)].skip(2);
+    }
+    count = 0;
+  };
   for (int y = area.y0; y < area.y1; ++y)
     for (int x = area.x0; x < area.x1; ++x)
       for (int s = unit.first; s < unit.first + unit.count; ++s) {
         const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options_.width) +
                            static_cast<std::uint32_t>(x);
-        Sampler sampler(pixel, static_cast<std::uint32_t>(s));
-        const Vec2 jitter = sampler.next_2d(), lens = sampler.next_2d();
-        const FilterSample place =
-            options_.samples > 1 ? filter_.sample(jitter, static_cast<std::uint32_t>(s)) : FilterSample{};
-        const Vec2 point{static_cast<float>(x) + 0.5f + place.offset.x,
-                         static_cast<float>(y) + 0.5f + place.offset.y};
-        batch.rays.push_back(lens_.ray(point, lens));
-        batch.samplers.push_back(sampler);
-        batch.signs.push_back(place.sign);
+        samples.samplers.emplace_back(pixel, static_cast<std::uint32_t>(s));
+        draws.set(count, samples.samplers.back());
+        starts[count++] = {x, y, s};
+        if (count == kBlock) start_block();
       }
+  start_block();
+}
 
-  // See what they see, and what they hit.
-  UnitResult result{film_.empty_tile(unit.tile)};
-  const std::span<bool> is_counted(batch.is_counted.get(), batch.rays.size());
-  RayCounts rays;
-  integrator_->sample_many(batch.rays, batch.samplers, batch.values, is_counted, rays);
-  result.rays = rays.total();
-  std::vector<float> features(batch.rays.size() * features_.channels());
-  std::unique_ptr<bool[]> is_hit;
-  if (!features_.layers().empty()) {
-    is_hit.reset(new bool[batch.rays.size()]);
-    features_.look(batch.rays, features, {is_hit.get(), batch.rays.size()});
-    result.rays += batch.rays.size();
-  }
-
-  // Add it up. A sample that is not finite is left out whole, and counted.
-  for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-    const std::size_t pixel = i / samples;
-    const std::span values = std::span<const float>(batch.values).subspan(i * channels, channels);
+/// Adds up the samples of a unit, of which `first` is the first one. A sample that is not finite is left out
+/// whole, and counted.
+void RenderJob::add_up(const Unit& unit, std::size_t first, const Samples& samples,
+                       UnitResult& result) const {
+  const auto channels = static_cast<std::size_t>(integrator_->channels());
+  const auto per_pixel = static_cast<std::size_t>(unit.count);
+  for (std::size_t k = 0; k < result.sums.pixel_count() * per_pixel; ++k) {
+    const std::size_t i = first + k, pixel = k / per_pixel;
+    const bool is_counted = samples.is_counted[i];
+    const std::span values = std::span(samples.values).subspan(i * channels, channels);
     const std::span seen =
-        std::span<const float>(features).subspan(i * features_.channels(), features_.channels());
-    if ((is_counted[i] && !all_finite(values)) || !all_finite(seen)) {
+        std::span(samples.features).subspan(i * features_.channels(), features_.channels());
+    if ((is_counted && !all_finite(values)) || !all_finite(seen)) {
       ++result.dropped;
       continue;
     }
-    const int sign = batch.signs[i];
+    const int sign = samples.signs[i];
     result.sums.count_sample(pixel);
-    if (is_counted[i]) {
+    if (is_counted) {
       result.sums.add(pixel, 0, values, sign);
       float brightness = 0;
       for (const float value : values) brightness += value;
       brightness /= static_cast<float>(channels);
-      if (is_in_half(unit.first + static_cast<int>(i % samples)))
+      if (is_in_half(unit.first + static_cast<int>(k % per_pixel)))
         result.sums.add(pixel, 1, {&brightness, 1}, sign);
     }
-    std::size_t first = 0;
-    for (std::size_t k = 0; k < features_.layers().size(); ++k) {
-      const auto size = static_cast<std::size_t>(result.sums.channels(2 + k));
-      if (is_hit[i] || Features::counts_misses(features_.layers()[k]))
-        result.sums.add(pixel, 2 + k, seen.subspan(first, size), sign);
-      first += size;
+    std::size_t channel = 0;
+    for (std::size_t layer = 0; layer < features_.layers().size(); ++layer) {
+      const auto size = static_cast<std::size_t>(result.sums.channels(2 + layer));
+      if (samples.is_hit[i] || Features::counts_misses(features_.layers()[layer]))
+        result.sums.add(pixel, 2 + layer, seen.subspan(channel, size), sign);
+      channel += size;
     }
   }
-  return result;
 }
 
 void RenderJob::add(const Task& task, const UnitResult& result) {

@@ -164,9 +164,8 @@ std::optional<LightSample> Lights::sample(const Surface& surface, Vec3 facing_no
   return sample_near(near_lights_[chosen->light], surface, chosen->probability * weight / sum, u);
 }
 
-void Lights::sample(std::span<const Surface> surfaces, const Receivers& from, const Leaving& leaving,
-                    Floats& choices, const Vec2s& u, LightSamples& out) const {
-  const int count = static_cast<int>(surfaces.size());
+void Lights::sample(const SurfaceBlock& surfaces, int count, const Receivers& from, Floats& choices,
+                    const Vec2s& u, LightSamples& out) const {
   BlockWeights root;
   if (!tree_.is_empty()) tree_.weigh_root(from, root);
 
@@ -191,7 +190,7 @@ void Lights::sample(std::span<const Surface> surfaces, const Receivers& from, co
     tree_.choose(from, count, root, choices, lights, probabilities);
     for (int i = 0; i < count && !far_lights_.empty(); ++i)
       probabilities[i] = sums[i] < kInfinity ? probabilities[i] * tree_weight[i] / sums[i] : 0;
-    sample_flat_lights(flat_lights_, lights, probabilities, leaving, u, out);
+    sample_flat_lights(flat_lights_, lights, probabilities, surfaces, u, out);
   }
 
   // The others, one by one.

@@ -12,14 +12,13 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "boxwood/render/emitter.h"
 #include "boxwood/render/environment.h"
 #include "boxwood/render/light_sample.h"
 #include "boxwood/render/sky.h"
-#include "boxwood/scene/surface.h"
+#include "boxwood/scene/surface_block.h"
 
 namespace boxwood::render {
 
@@ -35,10 +34,10 @@ class Lights {
   /// zero. Nothing when no light could reach it, or the point tried faces away.
   std::optional<LightSample> sample(const Surface& surface, Vec3 facing_normal, float choice, Vec2 u) const;
 
-  /// The same for each of `surfaces`, at most a block of them, with the same answers. `from` has their
-  /// positions and facing normals, `leaving` their positions, normals and clearances.
-  void sample(std::span<const Surface> surfaces, const Receivers& from, const Leaving& leaving,
-              Floats& choices, const Vec2s& u, LightSamples& out) const;
+  /// The same for the first `count` of `surfaces`, with the same answers. `from` has their positions and
+  /// facing normals.
+  void sample(const SurfaceBlock& surfaces, int count, const Receivers& from, Floats& choices, const Vec2s& u,
+              LightSamples& out) const;
 
   /// The radiance of the dome along a ray that hits nothing.
   Vec3 dome(Vec3 direction) const { return sky_ ? sky_radiance(*sky_, direction) : Vec3{}; }

@@ -8,25 +8,32 @@ inline float weigh_children(const LightNode& node, const Receiver& from, LightNo
   for (int lane = 0; lane < LightNode::kWidth; ++lane)
     out[lane] = node[lane].weight(from.position, from.normal, least_cos_in);
   weights = out;
-  return LightNode::sum([&out](int lane) { return out[lane]; });
+  return LightNode::sum(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
+}
+
+template <bool kTurns>
+inline void weigh_child(const LightChild child, const Receivers& __restrict from,
+                        Floats& __restrict weights) {
+  for (int i = 0; i < kBlock; ++i) {
+    const Vec3 normal = from.normal[i];
+    weights[i] = child.weight<kTurns>(from.position[i], normal, length_squared(normal) > 0 ? 0.0f : 1.0f);
+  }
 }
 
 inline void weigh_block(const LightNode& node, const Receivers& from, BlockWeights& out) {
   for (int lane = 0; lane < LightNode::kWidth; ++lane) {
-    Floats& weights = out.of_child[lane];
     const LightChild child = node[lane];
-    // Most nodes of a small scene are not full.
-    if (!(child.strength > 0)) {
-      weights.fill(0);
-      continue;
-    }
-    for (int i = 0; i < kBlock; ++i) {
-      const Vec3 normal = from.normal[i];
-      weights[i] = child.weight(from.position[i], normal, length_squared(normal) > 0 ? 0.0f : 1.0f);
-    }
+    // Most nodes of a small scene are not full, and their lights are flat.
+    if (!(child.strength > 0))
+      out.of_child[lane].fill(0);
+    else if (child.sin_facing > 0)
+      weigh_child<true>(child, from, out.of_child[lane]);
+    else
+      weigh_child<false>(child, from, out.of_child[lane]);
   }
+  const auto& w = out.of_child;
   for (int i = 0; i < kBlock; ++i)
-    out.sum[i] = LightNode::sum([&](int lane) { return out.of_child[lane][i]; });
+    out.sum[i] = LightNode::sum(w[0][i], w[1][i], w[2][i], w[3][i], w[4][i], w[5][i], w[6][i], w[7][i]);
 }
 
 inline void pick_block(const BlockWeights& weights, Floats& choice, Integers& lane, Floats& probability) {

@@ -1,5 +1,7 @@
 #include "boxwood/render/light_node.h"
 
+#include "boxwood/core/every_cpu.h"
+
 namespace boxwood::render {
 
 void LightNode::set(int lane, const LightBounds& b) {
@@ -24,15 +26,15 @@ void LightNode::set(int lane, const LightBounds& b) {
 #include "boxwood/core/every_cpu-inl.h"
 
 float LightNode::weigh(const Receiver& from, Lanes& weights) const {
-  return (has_avx2() ? avx2::weigh_children : everywhere::weigh_children)(*this, from, weights);
+  return BOXWOOD_BEST(weigh_children)(*this, from, weights);
 }
 
 void weigh(const LightNode& node, const Receivers& from, BlockWeights& out) {
-  (has_avx2() ? avx2::weigh_block : everywhere::weigh_block)(node, from, out);
+  BOXWOOD_BEST(weigh_block)(node, from, out);
 }
 
 void pick(const BlockWeights& weights, Floats& choice, Integers& lane, Floats& probability) {
-  (has_avx2() ? avx2::pick_block : everywhere::pick_block)(weights, choice, lane, probability);
+  BOXWOOD_BEST(pick_block)(weights, choice, lane, probability);
 }
 
 }  // namespace boxwood::render

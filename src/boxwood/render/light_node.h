@@ -5,8 +5,8 @@
 // children for one point, or over the points of a block for each child, and are vectors either way.
 #pragma once
 
+#include "boxwood/core/block.h"
 #include "boxwood/core/box.h"
-#include "boxwood/render/block.h"
 
 namespace boxwood::render {
 
@@ -46,6 +46,9 @@ struct LightChild {
   /// surface the lights are within an angle r of the middle of their sphere, so an angle t may be t - r in
   /// truth. For its cosine stands cos t + sin r: above 0 exactly where cos(t - r) is, and no less where that
   /// is below 0. Selects in place of branches, for vectors.
+  ///
+  /// `kTurns` is whether the lights face more than one direction, or there may be such.
+  template <bool kTurns = true>
   float weight(Vec3 p, Vec3 n, float least_cos_in) const {
     const float to_x = x - p.x, to_y = y - p.y, to_z = z - p.z;
     const float distance_squared = max(to_x * to_x + to_y * to_y + to_z * to_z, 1e-30f);
@@ -57,7 +60,8 @@ struct LightChild {
     // From where the lights face towards the surface, less their cone.
     const float along = -(axis_x * to_x + axis_y * to_y + axis_z * to_z) * per_distance;
     const float cos_axis = max(min(max(along, turned * along), 1.0f), -1.0f);
-    const float outside_cone = cos_axis * cos_facing + std::sqrt(1 - cos_axis * cos_axis) * sin_facing;
+    const float beside = kTurns ? std::sqrt(1 - cos_axis * cos_axis) * sin_facing : 0.0f;
+    const float outside_cone = cos_axis * cos_facing + beside;
     const float cos_away = cos_axis > cos_facing ? 1.0f : outside_cone;
     const float cos_emitted = min(cos_away + reach, 1.0f);
 
@@ -94,10 +98,8 @@ struct LightNode {
   float weigh(const Receiver& from, Lanes& weights) const;
 
   /// The sum of weights, in the order in which vectors are summed up.
-  template <class Weight>
-  static float sum(const Weight& weight) {
-    const auto pair = [&](int i) { return weight(i) + weight(i + kWidth / 2); };
-    return (pair(0) + pair(2)) + (pair(1) + pair(3));
+  static constexpr float sum(float a, float b, float c, float d, float e, float f, float g, float h) {
+    return ((a + e) + (c + g)) + ((b + f) + (d + h));
   }
 };
 

@@ -1,8 +1,7 @@
 // light_sample.h: what is known of a try to reach a light?
 #pragma once
 
-#include "boxwood/core/ray.h"
-#include "boxwood/render/block.h"
+#include "boxwood/core/block.h"
 
 namespace boxwood::render {
 
@@ -21,18 +20,14 @@ struct LightSamples {
   Vec3s direction, radiance;
   Floats pdf{};
   Integers is_perfect{};
-  Vec3s shadow_origin, shadow_direction;
-  Floats shadow_end{};  ///< The ray's t_max; it starts at 0.
+  RayBlock shadow_rays;
 
-  Ray shadow_ray(int i) const { return {shadow_origin[i], 0, shadow_direction[i], shadow_end[i]}; }
   void set(int i, const LightSample& sample) {
     direction.set(i, sample.direction);
     radiance.set(i, sample.radiance);
     pdf[i] = sample.pdf;
     is_perfect[i] = sample.is_perfect;
-    shadow_origin.set(i, sample.shadow_ray.origin);
-    shadow_direction.set(i, sample.shadow_ray.direction);
-    shadow_end[i] = sample.shadow_ray.t_max;
+    shadow_rays.set(i, sample.shadow_ray);
   }
 };
 

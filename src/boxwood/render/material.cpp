@@ -93,6 +93,7 @@ PreparedMaterial::PreparedMaterial(const Material& material)
       has_color_texture(material.color_texture.is_valid()),
       has_normal_texture(material.normal_texture.is_valid()),
       is_plain(false),
+      color(clamp01(material.color)),
       alpha(alpha_of(material.roughness, material.roughness_scale)),
       ior(material.ior >= 1 && material.ior < 10 ? material.ior : 1.5f),
       fresnel_mean(1 - (1 - internal_diffuse_reflectance(ior)) * ior * ior) {

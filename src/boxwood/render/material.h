@@ -42,6 +42,7 @@ struct PreparedMaterial {
   /// Plain: a matte base, bare or under a clear boundary whose roughness is the same everywhere and above 0.
   /// What most surfaces are (plain_block.h).
   bool is_plain;
+  Vec3 color;   ///< Of the base, where it has no texture.
   float alpha;  ///< GGX width, where it is the same everywhere.
   float ior;
   float fresnel_mean;  ///< Of a smooth boundary from outside, over a hemisphere of equal light.

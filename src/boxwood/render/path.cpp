@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "boxwood/render/bsdf.h"
 #include "boxwood/render/draws.h"
 #include "boxwood/render/light.h"
 #include "boxwood/render/material.h"
+#include "boxwood/render/next_rays.h"
+#include "boxwood/render/path_batch.h"
 #include "boxwood/render/plain_block.h"
 #include "boxwood/render/shadow.h"
 #include "boxwood/render/uv_frame.h"
@@ -21,92 +21,71 @@ namespace {
 // Bounds for light that is caught in glass, and for rays that pass through clear surfaces one behind the
 // other; roulette ends other paths long before.
 constexpr int kMaxBounces = 64, kMaxSteps = 1024;
-/// How many hits ahead the corners of triangles are asked for; memory answers meanwhile.
-constexpr std::size_t kAhead = 4;
-
-/// So many groups of materials are kept apart where hits are sorted by them.
-constexpr std::size_t kMaterialGroups = 256;
+/// Hits are sorted by so many groups of materials, and those that hit nothing.
+constexpr std::size_t kMiss = 0, kGroups = 256;
 
 constexpr int kRouletteAfter = 3;  // bounces; early ones carry most of the picture
-constexpr float kMaxSurvival = 0.95f;
 
 /// How far a cone of rays opens, in radians, when a surface scatters it: textures seen by way of a wall need
 /// no detail.
 constexpr float kScatteredAngle = 0.2f;
 
-/// The weight of a sample of density `a` when the same light could
-/// have been found with density `b`: Veach's power heuristic.
-float power_heuristic(float a, float b) {
-  const float ratio = b / a;
-  return 1 / (1 + ratio * ratio);
-}
+/// How many paths go on together: enough to keep the kernels full, few enough to stay in the nearer caches.
+constexpr std::size_t kPaths = 2048;
 
-/// Where the path stands, and how it got there:
-/// which part of the light that it may run into now is its own.
-struct Vertex {
-  Receiver place;  // the last point of the path
-  float pdf = 0;   // of the direction taken from there
-  // Next-event estimation could not have found what this direction finds; true at the camera.
-  bool is_perfect = true;
+/// Some points of a block.
+class PointList {
+ public:
+  /// Puts `i` at the end, without a branch.
+  void add_if(int i, bool is_in) {
+    points_[size_] = static_cast<std::uint8_t>(i);
+    size_ += is_in;
+  }
+  const std::uint8_t* begin() const { return points_.data(); }
+  const std::uint8_t* end() const { return points_.data() + size_; }
+
+ private:
+  std::array<std::uint8_t, kBlock> points_;
+  std::size_t size_ = 0;
 };
 
-/// A path on its way.
-struct Path {
-  Ray ray;
-  Sampler sampler;
-  Vec3 gathered{0, 0, 0}, throughput{1, 1, 1};
-  Vec3 absorption{0, 0, 0};  // of what the ray is in
-  Vertex last;
-  float cone_width = 0, cone_angle = 0;
-  int bounce = 0, steps = 0;
-};
-
-/// Has the processor fetch a path that is soon to be looked at.
-void prefetch_path([[maybe_unused]] const Path& path) {
-#if defined(__GNUC__)
-  constexpr std::size_t kLine = 64;
-  for (std::size_t at = 0; at < sizeof path; at += kLine)
-    __builtin_prefetch(reinterpret_cast<const char*>(&path) + at, 1);
-#endif
-}
-
-/// Light that a path gets if nothing is in the way.
-struct Pending {
-  std::uint32_t path;  // position among the paths
-  Vec3 light;
-};
-
-/// The hits of a block on their way through a step: where light may come from, and go on to.
+/// Hits of a block on their way through a step: where light may come from, and go on to.
 struct Step {
-  int count = 0, plain_count = 0;
-  std::array<std::uint32_t, kBlock> paths;  // positions among the paths
-  std::array<Surface, kBlock> surfaces;
+  /// What scatters light at a point; nothing where the path ended or went straight on.
+  enum class Kind : std::uint8_t { none, plain, other };
+
+  std::array<Kind, kBlock> kinds;
+  std::array<std::uint32_t, kBlock> places;  // of the paths
+  SurfaceBlock surfaces;
   std::array<const Material*, kBlock> materials;
-  std::array<bool, kBlock> is_plain;
   PlainBlock plain;  // how plain surfaces scatter light, and all others:
   std::array<Look, kBlock> looks;
   std::array<std::optional<Bsdf>, kBlock> bsdfs;
-  Receivers places;
-  Leaving leaving;
+  Receivers receivers;
+  PathPoints paths;
   Draws draws;
   Floats light_choices{}, lobe_choices{};
   Vec2s light_points, directions;
   LightSamples lights;
+  Integers may_meet_veil{}, is_in_medium{};
+  Scattered scattered;
+  NextRays next;
 
-  bool has_spread(int i) const { return is_plain[i] || bsdfs[i]->has_spread(); }
+  /// How many numbers a path draws at a point, before that of the roulette.
+  int draw_count(int i) const { return paths.is_spread[i] != 0 ? 3 : 2; }
 };
 
 class PathTracer final : public Integrator {
  public:
   PathTracer(const Scene& scene, const Camera& camera, float pixel_angle)
-      : scene_(scene), lights_(scene, camera), shadows_(scene), pixel_angle_(pixel_angle) {
+      : scene_(scene), surfaces_(scene), lights_(scene, camera), shadows_(scene), pixel_angle_(pixel_angle) {
     const SceneDesc& desc = scene.description();
     for (const Material& material : desc.materials) materials_.emplace_back(material);
     for (const Instance& instance : placed_instances(desc)) {
       const MaterialId own = desc.geometries[instance.geometry.value].material;
       const MaterialId id = instance.material.is_valid() ? instance.material : own;
       group_of_instance_.push_back(
-          id.is_valid() ? static_cast<std::uint8_t>(1 + id.value % (kMaterialGroups - 1)) : 0);
+          static_cast<std::uint8_t>(1 + (id.is_valid() ? id.value % (kGroups - 1) : 0)));
     }
   }
 
@@ -120,153 +99,106 @@ class PathTracer final : public Integrator {
 
   void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers, std::span<float> out,
                    std::span<bool> is_counted, RayCounts& rays) const override {
-    std::vector<Path> paths;
-    paths.reserve(camera_rays.size());
-    for (std::size_t i = 0; i < camera_rays.size(); ++i) {
-      Path path{camera_rays[i], samplers[i]};
-      path.cone_angle = pixel_angle_;
-      paths.push_back(path);
-      is_counted[i] = true;
-    }
+    std::fill(out.begin(), out.end(), 0.0f);
+    std::fill(is_counted.begin(), is_counted.end(), true);
+    Work work(std::min(camera_rays.size(), kPaths), out);
+    PathBatch& batch = work.batch;
+    for (std::size_t started = 0;;) {
+      // New paths take the places of those that have come to their end: batches stay full.
+      const std::size_t old_count = batch.front.size();
+      for (; started < camera_rays.size() && !batch.is_full(); ++started)
+        batch.start(Path(samplers[started], static_cast<std::uint32_t>(started), pixel_angle_),
+                    camera_rays[started]);
+      const std::size_t count = batch.front.size();
+      if (count == 0) break;
 
-    Batch batch(camera_rays.size());
-    std::vector<std::uint32_t>& on_their_way = batch.on_their_way;
-    bool is_first = true;
-    while (!on_their_way.empty()) {
-      // Find what each path hits.
-      const std::size_t count = on_their_way.size();
-      for (std::size_t i = 0; i < count; ++i) batch.rays[i] = paths[on_their_way[i]].ray;
-      scene_.closest_hit(std::span(batch.rays).first(count), std::span(batch.hits).first(count),
-                         &serial_executor());
-      (is_first ? rays.camera : rays.bounce) += count;
-      is_first = false;
+      // Find what each path hits. Rays of the camera go the same way, so they go apart from the others.
+      const std::span<const Ray> front_rays = batch.front.rays();
+      const std::span hits = std::span(batch.hits).first(count);
+      scene_.closest_hit(front_rays.first(old_count), hits.first(old_count), &serial_executor());
+      scene_.closest_hit(front_rays.subspan(old_count), hits.subspan(old_count), &serial_executor());
+      rays.bounce += old_count;
+      rays.camera += count - old_count;
 
       // Let each go on from there, material by material.
-      batch.pending.clear();
-      batch.ways.clear();
-      sort_by_material(batch, count);
-      for (std::size_t k = 0; k < count; ++k) {
-        if (k + 2 * kAhead < count) prefetch_triangle(scene_, batch.hits[batch.order[k + 2 * kAhead]]);
-        if (k + kAhead < count) {
-          const std::uint32_t ahead = batch.order[k + kAhead];
-          prefetch_corners(scene_, batch.hits[ahead]);
-          prefetch_path(paths[on_their_way[ahead]]);
-        }
-        const std::uint32_t i = batch.order[k], path = on_their_way[i];
-        batch.goes_on[path] = arrive(paths[path], batch.hits[i], path, batch.step);
-        if (batch.step.count == kBlock || k + 1 == count) leave(paths, batch);
-      }
+      batch.next.clear();
+      work.light.clear();
+      const std::size_t misses = sort_by_material(hits, work.order);
+      for (std::size_t k = 0; k < misses; ++k) escape(work, work.order[k]);
+      for (std::size_t k = misses; k < count; k += kBlock)
+        scatter(work, std::span(work.order).subspan(k, std::min<std::size_t>(kBlock, count - k)),
+                std::span(work.order).first(count).subspan(std::min<std::size_t>(k + kBlock, count)));
 
       // Find how much of the lights that they asked for is in sight.
-      batch.transmittances.resize(batch.ways.size());
-      shadows_.transmittances(batch.ways, batch.transmittances, rays);
-      for (std::size_t i = 0; i < batch.pending.size(); ++i)
-        paths[batch.pending[i].path].gathered += batch.pending[i].light * batch.transmittances[i];
-
-      std::erase_if(on_their_way, [&](std::uint32_t path) { return batch.goes_on[path] == 0; });
+      shadows_.deliver(work.light, out, rays);
+      std::swap(batch.front, batch.next);
     }
-    for (std::size_t i = 0; i < paths.size(); ++i) store(out.subspan(3 * i, 3), paths[i].gathered);
   }
 
  private:
-  /// The memory of one step of all paths.
-  struct Batch {
-    explicit Batch(std::size_t size)
-        : on_their_way(size), rays(size), hits(size), order(size), goes_on(size) {
-      std::iota(on_their_way.begin(), on_their_way.end(), 0u);
-      pending.reserve(size);
+  /// The memory of one call.
+  struct Work {
+    Work(std::size_t size, std::span<float> samples) : batch(size), order(size), light(size), out(samples) {}
+    void gather(std::uint32_t sample, Vec3 light) {
+      float* sum = &out[3 * std::size_t(sample)];
+      sum[0] += light.x;
+      sum[1] += light.y;
+      sum[2] += light.z;
     }
-    std::vector<std::uint32_t> on_their_way;  // paths,
-    std::vector<Ray> rays;                    // their rays,
-    std::vector<Hit> hits;                    // what these hit,
-    std::vector<std::uint32_t> order;         // and in which order hits are looked at
-    std::vector<char> goes_on;                // by path
-    std::vector<Pending> pending;             // one for each ray towards a light,
-    std::vector<Shadows::Way> ways;           // and what it starts in
-    std::vector<Vec3> transmittances;
+
+    PathBatch batch;
+    std::vector<std::uint32_t> order;  // in which hits are looked at
     Step step;
+    AwaitedLight light;
+    std::span<float> out;  // three floats for each sample
   };
 
-  /// Puts the first `count` hits in an order in which equal materials follow each other: the processor then
-  /// foresees branches better. Instances stand for their materials; misses come first.
-  void sort_by_material(Batch& batch, std::size_t count) const {
-    std::array<std::uint32_t, kMaterialGroups + 1> first{};
-    for (std::size_t i = 0; i < count; ++i) ++first[group_of(batch.hits[i]) + 1];
+  /// Puts hits in an order in which equal materials follow each other: the processor then foresees branches
+  /// better. Instances stand for their materials. Misses come first; returns how many. Has the processor
+  /// fetch the triangles that were hit, on the way.
+  std::size_t sort_by_material(std::span<const Hit> hits, std::span<std::uint32_t> order) const {
+    std::array<std::uint32_t, kGroups + 1> first{};
+    for (const Hit& hit : hits) ++first[group_of(hit) + 1];
     for (std::size_t group = 1; group < first.size(); ++group) first[group] += first[group - 1];
-    for (std::size_t i = 0; i < count; ++i)
-      batch.order[first[group_of(batch.hits[i])]++] = static_cast<std::uint32_t>(i);
+    const std::size_t misses = first[kMiss + 1];
+    for (std::uint32_t i = 0; const Hit& hit : hits) {
+      surfaces_.prefetch_triangle(hit);
+      order[first[group_of(hit)]++] = i++;
+    }
+    return misses;
   }
 
-  std::size_t group_of(const Hit& hit) const { return hit ? group_of_instance_[hit.instance_id.value] : 0; }
+  std::size_t group_of(const Hit& hit) const {
+    return hit ? group_of_instance_[hit.instance_id.value] : kMiss;
+  }
 
-  /// Takes a path to what its ray hit. True where it goes straight on from there; otherwise it has come to
-  /// its end, unless it now is part of the step.
-  bool arrive(Path& path, const Hit& hit, std::uint32_t position, Step& step) const {
-    if (max_component(path.absorption) > 0)
-      path.throughput *= beer(path.absorption, hit ? hit.t * length(path.ray.direction) : kInfinity);
-    if (!hit) {
-      path.gathered += path.throughput * background(path.ray.direction, path.last);
-      return false;
-    }
-    const SceneDesc& desc = scene_.description();
-    const int point = step.count;
-    Surface& surface = step.surfaces[point];
-    surface = surface_at(scene_, path.ray, hit);
-    path.cone_width += path.cone_angle * hit.t;
+  /// A path leaves the scene.
+  void escape(Work& work, std::uint32_t position) const {
+    const std::uint32_t place = work.batch.front.place(position);
+    Path& path = work.batch[place];
+    const Vec3 direction = work.batch.front.rays()[position].direction;
+    if (max_component(path.absorption) > 0) path.throughput *= beer(path.absorption, kInfinity);
+    work.gather(path.sample, path.throughput * background(direction, path, work.batch.left_from(place)));
+    work.batch.end(place);
+  }
 
-    MaterialId id = surface.material;
-    const PreparedMaterial* prepared = &this->prepared(id);
-    if (prepared->is_emissive) gather_emission(path, hit, surface);
-    if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) return false;
-
-    // Which material it is, where it is several; and whether the light meets it at all.
-    if (prepared->is_mix) {
-      id = choose_material(desc, id, surface.uv, path.sampler.next_1d());
-      prepared = &this->prepared(id);
-    }
-    const Material& material = material_of(desc, id);
-    if (prepared->is_see_through) {
-      const float opacity = opacity_at(desc, material, surface.uv);
-      if (opacity < 1 && (opacity <= 0 || !(path.sampler.next_1d() < opacity))) {
-        enter(path, material, surface, path.ray.direction);
-        path.ray = surface.spawn(path.ray.direction);
-        return true;
+  /// Up to a block of paths look at what they hit, ask for light, and go on. Those `ahead` come next.
+  void scatter(Work& work, std::span<const std::uint32_t> positions,
+               std::span<const std::uint32_t> ahead) const {
+    PathBatch& batch = work.batch;
+    Step& step = work.step;
+    const int count = static_cast<int>(positions.size());
+    surfaces_.read(batch.front.rays(), batch.hits, positions, step.surfaces);
+    bool is_any_plain = false;
+    for (int i = 0; i < count; ++i) {
+      // The block that comes next, meanwhile, is fetched.
+      if (const auto k = static_cast<std::size_t>(i); k < ahead.size()) {
+        surfaces_.prefetch_corners(batch.hits[ahead[k]]);
+        batch.prefetch(batch.front.place(ahead[k]));
       }
+      step.kinds[i] = arrive(work, positions[i], i);
+      is_any_plain |= step.kinds[i] == Step::Kind::plain;
     }
-
-    // What scatters light there, and to which sides.
-    const float uv_width = prepared->has_color_texture ? path.cone_width * uv_density(scene_, hit) : 0.0f;
-    const Vec3 normal =
-        prepared->has_normal_texture ? mapped_normal(scene_, hit, surface, material) : surface.shading_normal;
-    const Vec3 outgoing = -path.ray.direction;
-    const Vec3 color = prepared->is_plain ? base_color(desc, material, surface.uv, uv_width) : Vec3{0, 0, 0};
-    // (A black base has no lobe.)
-    step.is_plain[point] = max_component(color) > 0;
-    if (step.is_plain[point]) {
-      step.plain.set(point, *prepared, color, surface, normal, outgoing);
-      step.places.normal.set(point, dot(surface.normal, outgoing) < 0 ? -surface.normal : surface.normal);
-      ++step.plain_count;
-    } else {
-      step.looks[point] = look_at(desc, material, *prepared, surface.uv, uv_width);
-      const Bsdf& bsdf = step.bsdfs[point].emplace(step.looks[point], surface, normal, outgoing);
-      step.places.normal.set(point, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
-    }
-    step.paths[point] = position;
-    step.materials[point] = &material;
-    step.places.position.set(point, surface.position);
-    step.leaving.position.set(point, surface.position);
-    step.leaving.normal.set(point, surface.normal);
-    step.leaving.clearance[point] = surface.clearance();
-    step.draws.set(point, path.sampler);
-    ++step.count;
-    return false;
-  }
-
-  /// Lets all paths of the step ask for light and go on. Leaves it empty.
-  void leave(std::vector<Path>& paths, Batch& batch) const {
-    Step& step = batch.step;
-    const int count = std::exchange(step.count, 0);
-    if (count == 0) return;
 
     // The first draw chooses a light and a lobe; a second goes to a point of the light, where one is asked
     // for.
@@ -276,80 +208,152 @@ class PathTracer final : public Integrator {
       step.light_choices[i] = choices.x;
       step.lobe_choices[i] = choices.y;
       step.light_points.set(i, step.draws.pair(i, 1));
-      step.directions.set(i, step.draws.pair(i, step.has_spread(i) ? 2 : 1));
+      step.directions.set(i, step.draws.pair(i, step.draw_count(i) - 1));
+      step.paths.chance[i] = step.draws.pair(i, step.draw_count(i)).x;
     }
-    lights_.sample(std::span(step.surfaces).first(static_cast<std::size_t>(count)), step.places, step.leaving,
-                   step.light_choices, step.light_points, step.lights);
-    if (std::exchange(step.plain_count, 0) > 0)
-      step.plain.scatter(step.lights.direction, step.lobe_choices, step.directions);
-
+    step.receivers.position = step.surfaces.position;
+    lights_.sample(step.surfaces, count, step.receivers, step.light_choices, step.light_points, step.lights);
+    if (is_any_plain)
+      step.plain.scatter(step.lights.direction, step.lobe_choices, step.directions, step.scattered);
     for (int i = 0; i < count; ++i) {
-      Path& path = paths[step.paths[i]];
-      if (step.has_spread(i) && step.lights.pdf[i] > 0) ask_for_light(path, step, i, batch);
-      batch.goes_on[step.paths[i]] = go_on(path, step, i);
+      if (step.kinds[i] != Step::Kind::other) continue;
+      const Bsdf& bsdf = *step.bsdfs[i];
+      if (step.paths.is_spread[i] != 0 && step.lights.pdf[i] > 0)
+        step.scattered.set_toward_light(i, bsdf.evaluate(step.lights.direction[i]));
+      step.scattered.set_next(i, bsdf.sample(step.lobe_choices[i], step.directions[i]));
     }
+    shadows_.find_veiled(step.lights.shadow_rays, step.may_meet_veil);
+    send_rays(step.paths, step.surfaces, step.scattered, step.lights, step.next);
+
+    // Send them out, one kind after the other: lists leave no branches to foresee.
+    PointList light, careful_light, onward, ending;
+    for (int i = 0; i < count; ++i) {
+      const bool is_live = step.kinds[i] != Step::Kind::none, asks = step.next.asks_for_light[i] != 0;
+      const bool is_careful = (step.may_meet_veil[i] | step.is_in_medium[i]) != 0;
+      light.add_if(i, is_live & asks & !is_careful);
+      careful_light.add_if(i, is_live & asks & is_careful);
+      onward.add_if(i, is_live & (step.next.goes_on[i] != 0));
+      ending.add_if(i, is_live & (step.next.goes_on[i] == 0));
+    }
+    for (const int i : light)
+      work.light.add(batch[step.places[i]].sample, step.next.light[i], step.lights.shadow_rays[i]);
+    for (const int i : careful_light) {
+      const Path& path = batch[step.places[i]];
+      work.light.add_careful(path.sample, step.next.light[i], step.lights.shadow_rays[i], path.absorption);
+    }
+    for (const int i : onward) go_on(batch, step, i);
+    for (const int i : ending) batch.end(step.places[i]);
   }
 
-  /// Goes on in a direction that the surface chooses. False at the path's end.
-  static bool go_on(Path& path, const Step& step, int i) {
-    const Surface& surface = step.surfaces[i];
-    const std::optional<BsdfSample> next =
-        step.is_plain[i] ? step.plain.next(i)
-                         : step.bsdfs[i]->sample(step.lobe_choices[i], step.directions[i]);
-    if (!next) return false;
-    path.throughput *= next->weight;
+  /// Takes a path to what its ray hit, point `i` of the step.
+  Step::Kind arrive(Work& work, std::uint32_t position, int i) const {
+    using Kind = Step::Kind;
+    const Ray& ray = work.batch.front.rays()[position];
+    const Hit& hit = work.batch.hits[position];
+    const std::uint32_t place = work.batch.front.place(position);
+    Path& path = work.batch[place];
+    Step& step = work.step;
+    const SceneDesc& desc = scene_.description();
+    if (max_component(path.absorption) > 0)
+      path.throughput *= beer(path.absorption, hit.t * length(ray.direction));
+    path.cone_width += path.cone_angle * hit.t;
 
-    // Russian roulette: end paths that carry little, and let the others stand for them.
-    int drawn = step.has_spread(i) ? 3 : 2;
-    if (path.bounce >= kRouletteAfter) {
-      const float survival = min(max_component(path.throughput), kMaxSurvival);
-      if (!(step.draws.pair(i, drawn++).x < survival)) return false;
-      path.throughput *= 1 / survival;
+    MaterialId id = step.surfaces.material[i];
+    const Vec2 uv = step.surfaces.uv[i];
+    const PreparedMaterial* prepared = &this->prepared(id);
+    if (prepared->is_emissive) gather_emission(work, place, ray.direction, hit, step.surfaces[i]);
+    if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) {
+      work.batch.end(place);
+      return Kind::none;
     }
-    path.sampler.skip(static_cast<std::uint32_t>(drawn));
-    if (!(max_component(path.throughput) > 0)) return false;
-    if (next->is_transmission) enter(path, *step.materials[i], surface, next->direction);
-    path.last = {{step.places.position[i], step.places.normal[i]}, next->pdf, next->is_perfect};
-    if (!next->is_perfect) path.cone_angle = max(path.cone_angle, kScatteredAngle);
-    path.ray = surface.spawn(next->direction);
+
+    // Which material it is, where it is several; and whether the light meets it at all.
+    if (prepared->is_mix) {
+      id = choose_material(desc, id, uv, path.sampler.next_1d());
+      prepared = &this->prepared(id);
+    }
+    const Material& material = material_of(desc, id);
+    if (prepared->is_see_through) {
+      const float opacity = opacity_at(desc, material, uv);
+      if (opacity < 1 && (opacity <= 0 || !(path.sampler.next_1d() < opacity))) {
+        const Surface surface = step.surfaces[i];
+        enter(path, material, surface.normal, ray.direction);
+        work.batch.next.add(surface.spawn(ray.direction), place);
+        return Kind::none;
+      }
+    }
+
+    // What scatters light there, and to which sides.
+    step.places[i] = place;
+    step.materials[i] = &material;
+    step.draws.set(i, path.sampler);
+    step.paths.throughput.set(i, path.throughput);
+    step.is_in_medium[i] = max_component(path.absorption) > 0;
+    step.paths.in_roulette[i] = path.bounce >= kRouletteAfter;
+    const float uv_width = prepared->has_color_texture ? path.cone_width * step.surfaces.uv_density[i] : 0.0f;
+    const Vec3 normal = prepared->has_normal_texture ? mapped_normal(scene_, hit, step.surfaces[i], material)
+                                                     : step.surfaces.shading_normal[i];
+    const Vec3 outgoing = -ray.direction;
+    const Vec3 color = !prepared->is_plain           ? Vec3{0, 0, 0}
+                       : prepared->has_color_texture ? base_color(desc, material, uv, uv_width)
+                                                     : prepared->color;
+    // (A black base has no lobe.)
+    if (max_component(color) > 0) {
+      const Vec3 geometric = step.surfaces.normal[i];
+      step.plain.set(i, *prepared, color, geometric, normal, outgoing);
+      step.receivers.normal.set(i, geometric * (dot(geometric, outgoing) < 0 ? -1.0f : 1.0f));
+      step.paths.is_spread[i] = 1;
+      return Kind::plain;
+    }
+    step.looks[i] = look_at(desc, material, *prepared, uv, uv_width);
+    const Bsdf& bsdf = step.bsdfs[i].emplace(step.looks[i], step.surfaces[i], normal, outgoing);
+    step.receivers.normal.set(i, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
+    step.paths.is_spread[i] = bsdf.has_spread();
+    return Kind::other;
+  }
+
+  /// The path of point `i` goes on.
+  static void go_on(PathBatch& batch, const Step& step, int i) {
+    const std::uint32_t place = step.places[i];
+    Path& path = batch[place];
+    const Vec3 direction = step.scattered.direction[i];
+    const bool is_perfect = step.scattered.is_perfect[i] != 0;
+    if (step.scattered.is_transmission[i] != 0)
+      enter(path, *step.materials[i], step.surfaces.normal[i], direction);
+    path.throughput = step.next.throughput[i];
+    path.sampler.skip(static_cast<std::uint32_t>(step.draw_count(i) + (path.bounce >= kRouletteAfter)));
+    path.pdf = step.scattered.pdf[i];
+    path.is_perfect = is_perfect;
+    if (!is_perfect) path.cone_angle = max(path.cone_angle, kScatteredAngle);
     ++path.bounce;
-    return true;
+    batch.left_from(place) = {step.receivers.position[i], step.receivers.normal[i]};
+    batch.next.add({step.next.origin[i], 0, direction, kInfinity}, place);
   }
 
   /// Adds the light that the surface sends out itself, in so far as it is this way's to find.
-  void gather_emission(Path& path, const Hit& hit, const Surface& surface) const {
-    const Vec3 emission = lights_.emission(surface, path.ray.direction);
+  void gather_emission(Work& work, std::uint32_t place, Vec3 direction, const Hit& hit,
+                       const Surface& surface) const {
+    const Path& path = work.batch[place];
+    const Vec3 emission = lights_.emission(surface, direction);
     if (!(max_component(emission) > 0)) return;
     float weight = 1;
-    if (!path.last.is_perfect)
-      weight = power_heuristic(path.last.pdf, lights_.pdf(hit, surface, path.ray.direction, path.last.place));
-    path.gathered += path.throughput * emission * weight;
+    if (!path.is_perfect)
+      weight = power_heuristic(path.pdf, lights_.pdf(hit, surface, direction, work.batch.left_from(place)));
+    work.gather(path.sample, path.throughput * emission * weight);
   }
 
   /// Remembers what the path is in, on the other side of a surface.
-  static void enter(Path& path, const Material& material, const Surface& surface, Vec3 direction) {
+  static void enter(Path& path, const Material& material, Vec3 normal, Vec3 direction) {
     if (material.is_thin) return;
-    path.absorption = dot(direction, surface.normal) < 0 ? material.absorption : material.outer_absorption;
+    path.absorption = dot(direction, normal) < 0 ? material.absorption : material.outer_absorption;
   }
 
-  Vec3 background(Vec3 direction, const Vertex& last) const {
+  Vec3 background(Vec3 direction, const Path& path, const Receiver& from) const {
     Vec3 sum = lights_.dome(direction);
-    lights_.for_each_far_light(direction, last.place, [&](const Lights::FarLight& light) {
-      sum += light.radiance * (last.is_perfect ? 1 : power_heuristic(last.pdf, light.pdf));
+    lights_.for_each_far_light(direction, from, [&](const Lights::FarLight& light) {
+      sum += light.radiance * (path.is_perfect ? 1 : power_heuristic(path.pdf, light.pdf));
     });
     return sum;
-  }
-
-  /// Asks how much of the light that was tried is in sight.
-  static void ask_for_light(const Path& path, const Step& step, int i, Batch& batch) {
-    const LightSamples& lights = step.lights;
-    const BsdfValue toward =
-        step.is_plain[i] ? step.plain.toward_light(i) : step.bsdfs[i]->evaluate(lights.direction[i]);
-    if (!(max_component(toward.value) > 0)) return;
-    const float weight = lights.is_perfect[i] != 0 ? 1 : power_heuristic(lights.pdf[i], toward.pdf);
-    batch.ways.push_back({lights.shadow_ray(i), path.absorption});
-    batch.pending.push_back(
-        {step.paths[i], path.throughput * toward.value * lights.radiance[i] * (weight / lights.pdf[i])});
   }
 
   const PreparedMaterial& prepared(MaterialId id) const {
@@ -357,6 +361,7 @@ class PathTracer final : public Integrator {
   }
 
   const Scene& scene_;
+  SurfaceReader surfaces_;
   Lights lights_;
   Shadows shadows_;
   float pixel_angle_;

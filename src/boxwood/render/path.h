@@ -2,9 +2,10 @@
 //
 // Many paths go on together, a step at a time: all their rays are traced as one batch, then each path looks
 // at what it hit, asks for light and picks its next direction, then all rays towards lights are traced as one
-// batch. The kernels answer a batch of rays that go all ways about twice as fast as the same rays one by one
-// (Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013, for the idea on other machines). A
-// path keeps its own numbers and its own sums, so what it finds does not depend on its company.
+// batch. New paths take the places of those that end. The kernels answer a batch of rays that go all ways
+// about twice as fast as the same rays one by one (Laine, Karras and Aila, "Megakernels Considered Harmful",
+// HPG 2013, for the idea on other machines). A path keeps its own numbers and a sample its own sum, so what
+// they find does not depend on their company.
 #pragma once
 
 #include "boxwood/render/integrator.h"

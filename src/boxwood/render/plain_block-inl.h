@@ -95,7 +95,7 @@ inline void prepare_block(PlainPoints& p) {
 }
 
 inline void evaluate_block(const PlainPoints& __restrict p, const Vec3s& __restrict directions,
-                           Vec3s& __restrict values, Floats& __restrict pdfs) {
+                           Scattered& __restrict out) {
   Vec3s local;
   Floats albedos;
   for (int i = 0; i < kBlock; ++i) {
@@ -107,14 +107,13 @@ inline void evaluate_block(const PlainPoints& __restrict p, const Vec3s& __restr
     // Nothing comes through the true surface, whatever the interpolated normal says.
     const bool is_possible = (dot(directions[i], p.geometric[i]) > 0) == (local.z[i] > 0);
     const BsdfValue found = evaluate_plain(p, i, local[i], albedos[i], is_possible);
-    values.set(i, found.value);
-    pdfs[i] = found.pdf;
+    out.toward_value.set(i, found.value);
+    out.toward_pdf[i] = found.pdf;
   }
 }
 
 inline void sample_block(const PlainPoints& __restrict p, const Floats& __restrict choices,
-                         const Vec2s& __restrict u, Vec3s& __restrict directions, Vec3s& __restrict weights,
-                         Floats& __restrict pdfs) {
+                         const Vec2s& __restrict u, Scattered& __restrict out) {
   Vec3s local;
   Floats albedos;
   for (int i = 0; i < kBlock; ++i) {
@@ -132,9 +131,11 @@ inline void sample_block(const PlainPoints& __restrict p, const Floats& __restri
     const Vec3 way = local[i];
     const Vec3 direction = normalize(p.x_axis[i] * way.x + p.y_axis[i] * way.y + p.z_axis[i] * way.z);
     const BsdfValue found = evaluate_plain(p, i, way, albedos[i], dot(direction, p.geometric[i]) > 0);
-    directions.set(i, direction);
-    weights.set(i, found.value / found.pdf);
-    pdfs[i] = found.pdf;
+    out.direction.set(i, direction);
+    out.weight.set(i, found.value / found.pdf);
+    out.pdf[i] = found.pdf;
+    out.has_next[i] = found.pdf > 0 ? 1u : 0u;
+    out.is_perfect[i] = out.is_transmission[i] = 0;
   }
 }
 

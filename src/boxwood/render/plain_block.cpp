@@ -1,5 +1,6 @@
 #include "boxwood/render/plain_block.h"
 
+#include "boxwood/core/every_cpu.h"
 #include "boxwood/render/fresnel.h"
 
 namespace boxwood::render {
@@ -8,9 +9,8 @@ namespace {
 /// The loops, as one instruction set has them.
 struct PlainKernels {
   void (*prepare)(PlainPoints& points);
-  void (*evaluate)(const PlainPoints& points, const Vec3s& directions, Vec3s& values, Floats& pdfs);
-  void (*sample)(const PlainPoints& points, const Floats& choices, const Vec2s& u, Vec3s& directions,
-                 Vec3s& weights, Floats& pdfs);
+  void (*evaluate)(const PlainPoints& points, const Vec3s& directions, Scattered& out);
+  void (*sample)(const PlainPoints& points, const Floats& choices, const Vec2s& u, Scattered& out);
 };
 
 }  // namespace
@@ -28,16 +28,14 @@ const AlbedoRow kNoBoundary{};
 PlainBlock::PlainBlock() {
   static const PreparedMaterial matte{Material{}};
   const Vec3 up{0, 0, 1};
-  Surface surface{};
-  surface.normal = up;
-  for (int i = 0; i < kBlock; ++i) set(i, matte, splat(0.5f), surface, up, up);
+  for (int i = 0; i < kBlock; ++i) set(i, matte, splat(0.5f), up, up, up);
 }
 
-void PlainBlock::set(int i, const PreparedMaterial& material, Vec3 color, const Surface& surface, Vec3 normal,
+void PlainBlock::set(int i, const PreparedMaterial& material, Vec3 color, Vec3 geometric, Vec3 normal,
                      Vec3 outgoing) {
   const AlbedoRow* row =
       material.coat_over_base ? &material.coat_over_base->nearest(material.alpha) : nullptr;
-  points_.normal.set(i, surface.normal);
+  points_.normal.set(i, geometric);
   points_.shading_normal.set(i, normal);
   points_.outgoing_world.set(i, outgoing);
   points_.color.set(i, color);
@@ -48,11 +46,11 @@ void PlainBlock::set(int i, const PreparedMaterial& material, Vec3 color, const 
   points_.rows[i] = row != nullptr ? row : &kNoBoundary;
 }
 
-void PlainBlock::scatter(const Vec3s& toward_lights, const Floats& choices, const Vec2s& u) {
-  const PlainKernels& loops = has_avx2() ? avx2::kKernels : everywhere::kKernels;
+void PlainBlock::scatter(const Vec3s& toward_lights, const Floats& choices, const Vec2s& u, Scattered& out) {
+  const PlainKernels& loops = BOXWOOD_BEST(kKernels);
   loops.prepare(points_);
-  loops.evaluate(points_, toward_lights, toward_value_, toward_pdf_);
-  loops.sample(points_, choices, u, next_direction_, next_weight_, next_pdf_);
+  loops.evaluate(points_, toward_lights, out);
+  loops.sample(points_, choices, u, out);
 }
 
 }  // namespace boxwood::render

@@ -8,8 +8,8 @@
 
 #include <optional>
 
+#include "boxwood/core/block.h"
 #include "boxwood/render/bsdf.h"
-#include "boxwood/render/light_sample.h"
 
 namespace boxwood::render {
 
@@ -27,28 +27,51 @@ struct PlainPoints {
   Floats passes{}, specular_chance{}, diffuse_chance{};
 };
 
+/// What the points of a block do to light.
+struct Scattered {
+  // That comes from where they were asked about; and
+  Vec3s toward_value;
+  Floats toward_pdf{};
+  // where the light that they send on may have come from, if it does at all.
+  Integers has_next{};
+  Vec3s direction, weight;
+  Floats pdf{};
+  Integers is_perfect{}, is_transmission{};
+
+  BsdfValue toward_light(int i) const { return {toward_value[i], toward_pdf[i]}; }
+  std::optional<BsdfSample> next(int i) const {
+    if (has_next[i] == 0) return std::nullopt;
+    return BsdfSample{direction[i], weight[i], pdf[i], is_perfect[i] != 0, is_transmission[i] != 0};
+  }
+  void set_toward_light(int i, const BsdfValue& value) {
+    toward_value.set(i, value.value);
+    toward_pdf[i] = value.pdf;
+  }
+  void set_next(int i, const std::optional<BsdfSample>& next) {
+    has_next[i] = next ? 1 : 0;
+    if (!next) return;
+    direction.set(i, next->direction);
+    weight.set(i, next->weight);
+    pdf[i] = next->pdf;
+    is_perfect[i] = next->is_perfect;
+    is_transmission[i] = next->is_transmission;
+  }
+};
+
 class PlainBlock {
  public:
   PlainBlock();
 
   /// Puts a point of a plain material into place `i`, instead of a Bsdf with the same arguments. `color` is
-  /// that of the base there.
-  void set(int i, const PreparedMaterial& material, Vec3 color, const Surface& surface, Vec3 normal,
-           Vec3 outgoing);
+  /// that of the base there, `geometric` the normal of the surface.
+  void set(int i, const PreparedMaterial& material, Vec3 color, Vec3 geometric, Vec3 normal, Vec3 outgoing);
 
-  /// What Bsdf::evaluate() gives for the directions of `lights`, and Bsdf::sample() for `choices` and `u`.
-  void scatter(const Vec3s& toward_lights, const Floats& choices, const Vec2s& u);
-
-  BsdfValue toward_light(int i) const { return {toward_value_[i], toward_pdf_[i]}; }
-  std::optional<BsdfSample> next(int i) const {
-    if (!(next_pdf_[i] > 0)) return std::nullopt;
-    return BsdfSample{next_direction_[i], next_weight_[i], next_pdf_[i]};
-  }
+  /// What Bsdf::evaluate() gives for the directions of `toward_lights`, and Bsdf::sample() for `choices` and
+  /// `u`.
+  void scatter(const Vec3s& toward_lights, const Floats& choices, const Vec2s& u, Scattered& out);
 
  private:
   PlainPoints points_;
-  Vec3s toward_value_, next_direction_, next_weight_;
-  Floats toward_pdf_{}, next_pdf_{};
 };
 
 }  // namespace boxwood::render

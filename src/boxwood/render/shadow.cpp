@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "boxwood/render/block.h"
+#include "boxwood/core/every_cpu.h"
 #include "boxwood/render/material.h"
 #include "boxwood/scene/surface.h"
 
@@ -54,18 +54,6 @@ bool has_see_through(const SceneDesc& desc, const Instance& instance) {
   return std::any_of(geometry.materials.begin(), geometry.materials.end(), lets_through);
 }
 
-/// Rays of a block.
-struct RayBlock {
-  Vec3s origin, direction;
-  Floats t_max{};
-
-  void set(int i, const Ray& ray) {
-    origin.set(i, ray.origin);
-    direction.set(i, ray.direction);
-    t_max[i] = ray.t_max;
-  }
-};
-
 }  // namespace
 
 Shadows::Shadows(const Scene& scene) : scene_(scene) {
@@ -87,54 +75,47 @@ Shadows::Shadows(const Scene& scene) : scene_(scene) {
 #define BOXWOOD_LOOPS "boxwood/render/shadow-inl.h"
 #include "boxwood/core/every_cpu-inl.h"
 
-void Shadows::find_veiled(std::span<const Way> ways, std::span<char> is_veiled) const {
-  const auto loop = has_avx2() ? avx2::meet_boxes : everywhere::meet_boxes;
-  RayBlock block;
-  for (std::size_t first = 0; first < ways.size(); first += kBlock) {
-    const std::size_t count = std::min<std::size_t>(kBlock, ways.size() - first);
-    for (std::size_t i = 0; i < count; ++i) block.set(static_cast<int>(i), ways[first + i].ray);
-    Integers meets{};
-    for (const Box3& veil : veils_) loop(veil, reach_, block, meets);
-    for (std::size_t i = 0; i < count; ++i) is_veiled[first + i] = meets[i] != 0;
+void Shadows::find_veiled(const RayBlock& rays, Integers& may_meet_veil) const {
+  may_meet_veil.fill(0);
+  for (const Box3& veil : veils_) BOXWOOD_BEST(meet_boxes)(veil, reach_, rays, may_meet_veil);
+}
+
+void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& rays) const {
+  const auto add = [&](const AwaitedLight::Light& to, Vec3 transmittance) {
+    float* sum = &samples[3 * std::size_t(to.sample)];
+    const Vec3 arrived = to.light * transmittance;
+    sum[0] += arrived.x;
+    sum[1] += arrived.y;
+    sum[2] += arrived.z;
+  };
+  const AwaitedLight::Row &plain = light.plain_, &careful = light.careful_;
+  scene_.any_hit(std::span(plain.rays).first(plain.size), {light.is_hidden_.get(), plain.size},
+                 &serial_executor());
+  rays.shadow += plain.size;
+  for (std::size_t i = 0; i < plain.size; ++i)
+    if (!light.is_hidden_[i]) add(plain.lights[i], {1, 1, 1});
+
+  scene_.closest_hit(std::span(careful.rays).first(careful.size), std::span(light.hits_).first(careful.size),
+                     &serial_executor());
+  rays.bounce += careful.size;
+  for (std::size_t i = 0; i < careful.size; ++i) {
+    const Hit& hit = light.hits_[i];
+    const Ray& ray = careful.rays[i];
+    const AwaitedLight::Light& to = careful.lights[i];
+    if (!hit)
+      add(to, beer(light.absorption_[i], ray.t_max * length(ray.direction)));
+    else if (is_veil_[hit.instance_id.value] != 0)
+      add(to, walk(ray, hit, light.absorption_[i], rays));
   }
 }
 
-void Shadows::transmittances(std::span<const Way> ways, std::span<Vec3> out, RayCounts& rays) const {
-  std::vector<Ray> plain, veiled;
-  std::vector<char> is_veiled(ways.size());
-  plain.reserve(ways.size());
-  find_veiled(ways, is_veiled);
-  for (std::size_t i = 0; i < ways.size(); ++i) (is_veiled[i] ? veiled : plain).push_back(ways[i].ray);
-  const std::unique_ptr<bool[]> is_hidden(new bool[plain.size()]);
-  scene_.any_hit(plain, {is_hidden.get(), plain.size()}, &serial_executor());
-  std::vector<Hit> hits(veiled.size());
-  scene_.closest_hit(veiled, hits, &serial_executor());
-  rays.shadow += plain.size();
-  rays.bounce += veiled.size();
-
-  std::size_t next_plain = 0, next_veiled = 0;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    const Way& way = ways[i];
-    const Hit* hit = is_veiled[i] ? &hits[next_veiled++] : nullptr;
-    const bool is_clear = hit != nullptr ? !hit->is_hit() : !is_hidden[next_plain++];
-    if (is_clear)
-      out[i] = max_component(way.absorption) > 0
-                   ? beer(way.absorption, way.ray.t_max * length(way.ray.direction))
-                   : Vec3{1, 1, 1};
-    else if (hit != nullptr && is_veil_[hit->instance_id.value] != 0)
-      out[i] = walk(way, *hit, rays);
-    else
-      out[i] = {0, 0, 0};
-  }
-}
-
-Vec3 Shadows::walk(const Way& way, const Hit& first_hit, RayCounts& rays) const {
+Vec3 Shadows::walk(const Ray& way, const Hit& first_hit, Vec3 absorption, RayCounts& rays) const {
   const SceneDesc& desc = scene_.description();
-  const bool has_end = way.ray.t_max < kInfinity;
-  const Vec3 end = has_end ? way.ray.at(way.ray.t_max) : Vec3{0, 0, 0};
-  Ray ray = way.ray;
+  const bool has_end = way.t_max < kInfinity;
+  const Vec3 end = has_end ? way.at(way.t_max) : Vec3{0, 0, 0};
+  Ray ray = way;
   Hit hit = first_hit;
-  Vec3 left{1, 1, 1}, absorption = way.absorption;
+  Vec3 left{1, 1, 1};
   for (int step = 0; step < kMaxSteps; ++step) {
     left *= beer(absorption, min(hit.t, ray.t_max) * length(ray.direction));
     if (!hit) return left;

@@ -50,17 +50,18 @@ struct Rgba {
   Rgba operator+(const Rgba& b) const { return {color + b.color, alpha + b.alpha}; }
 };
 
+Rgba decoded(const Texture& texture, const std::array<float, 4>& t) {
+  if (!texture.is_srgb) return {{t[0], t[1], t[2]}, t[3]};
+  const auto decode = [](float code) {
+    const float place = min(max(code, 0.0f), 1.0f) * (DecodeTables::kFine - 1);
+    return kDecode.fine_srgb[static_cast<int>(place + 0.5f)];
+  };
+  return {{decode(t[0]), decode(t[1]), decode(t[2])}, t[3]};
+}
+
 Rgba texel_of(const Texture& texture, int level, int width, int x, int y) {
   if (x < 0 || y < 0) return {};
-  if (texture.source) {
-    const std::array<float, 4> t = texture.source->texel(level, x, y);
-    const auto decode = [&](float code) {
-      if (!texture.is_srgb) return code;
-      const float place = min(max(code, 0.0f), 1.0f) * (DecodeTables::kFine - 1);
-      return kDecode.fine_srgb[static_cast<int>(place + 0.5f)];
-    };
-    return {{decode(t[0]), decode(t[1]), decode(t[2])}, t[3]};
-  }
+  if (texture.source) return decoded(texture, texture.source->texel(level, x, y));
   const auto& t = texture.texels[std::size_t(y) * width + x];
   const float* decode = texture.is_srgb ? kDecode.srgb : kDecode.linear;
   return {{decode[t[0]], decode[t[1]], decode[t[2]]}, kDecode.linear[t[3]]};
@@ -83,9 +84,16 @@ Rgba bilinear(const Texture& texture, int level, Vec2 uv) {
             x1 = wrap(std::int64_t(floor_x) + 1, width, texture.wrap_u);
   const int y0 = wrap(std::int64_t(floor_y), height, texture.wrap_v),
             y1 = wrap(std::int64_t(floor_y) + 1, height, texture.wrap_v);
-  const auto texel = [&](int column, int row) { return texel_of(texture, level, width, column, row); };
-  const Rgba upper = texel(x0, y0) * (1 - right) + texel(x1, y0) * right;
-  const Rgba lower = texel(x0, y1) * (1 - right) + texel(x1, y1) * right;
+  std::array<Rgba, 4> texels;
+  if (texture.source && std::min(std::min(x0, x1), std::min(y0, y1)) >= 0) {
+    const auto codes = texture.source->texels(level, x0, x1, y0, y1);
+    for (std::size_t i = 0; i < 4; ++i) texels[i] = decoded(texture, codes[i]);
+  } else {
+    const auto texel = [&](int column, int row) { return texel_of(texture, level, width, column, row); };
+    texels = {texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)};
+  }
+  const Rgba upper = texels[0] * (1 - right) + texels[1] * right;
+  const Rgba lower = texels[2] * (1 - right) + texels[3] * right;
   return upper * (1 - down) + lower * down;
 }
 

@@ -40,13 +40,6 @@ std::optional<UvFrame> uv_frame(const Scene& scene, const Hit& hit) {
   return frame;
 }
 
-float uv_density(const Scene& scene, const Hit& hit) {
-  const std::optional<Edges> e = edges_at(scene, hit);
-  if (!e) return 0;
-  const float area = length(cross(e->first, e->second));
-  return area > 0 ? std::sqrt(std::fabs(e->uv_area) / area) : 0;
-}
-
 Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, const Material& material) {
   if (!material.normal_texture.is_valid()) return surface.shading_normal;
   const std::optional<UvFrame> frame = uv_frame(scene, hit);

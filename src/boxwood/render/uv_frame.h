@@ -15,9 +15,6 @@ struct UvFrame {
 /// Nothing where the hit is not on a mesh with texture coordinates, or they are all the same there.
 std::optional<UvFrame> uv_frame(const Scene& scene, const Hit& hit);
 
-/// How much of uv, on a side, a square of the world of side 1 covers there; 0 where it is not known.
-float uv_density(const Scene& scene, const Hit& hit);
-
 /// The normal that a normal map (a material's normal_texture) gives the surface; its shading normal where
 /// there is none.
 Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, const Material& material);

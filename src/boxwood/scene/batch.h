@@ -14,7 +14,8 @@ constexpr std::size_t kMaxChunk = 4096, kMinChunk = 512;
 /// Chunks begin at multiples of this, so that none cuts a tile of a picture, whose rays go the same way.
 constexpr std::size_t kWhole = 64;
 
-/// Calls body(begin, end) for chunks of `count` rays: some for each thread, so that all end together.
+/// Calls body(begin, end) for chunks of `count` rays: some for each thread, so that all end together; one
+/// thread alone takes the longest, in which the kernels are short of rays least.
 template <class Body>
 void for_chunks(Executor* given, std::size_t count, const Body& body) {
   if (count <= kMinChunk) {
@@ -22,7 +23,8 @@ void for_chunks(Executor* given, std::size_t count, const Body& body) {
     return;
   }
   Executor& executor = given ? *given : default_executor();
-  const std::size_t share = count / (8 * static_cast<std::size_t>(executor.concurrency()));
+  const auto threads = static_cast<std::size_t>(executor.concurrency());
+  const std::size_t share = threads > 1 ? count / (8 * threads) : count;
   const std::size_t chunk = std::clamp(share, kMinChunk, kMaxChunk) / kWhole * kWhole;
   parallel_for(executor, 0, (count + chunk - 1) / chunk, 1,
                [&](std::size_t i) { body(i * chunk, std::min((i + 1) * chunk, count)); });

@@ -36,6 +36,10 @@ class PictureSource {
   virtual int levels() const = 0;
   /// The pixel of a level as RGBA codes in [0, 1]; the top row is 0. Precondition: it is inside.
   virtual std::array<float, 4> texel(int level, int x, int y) const = 0;
+  /// Four at once, which may be faster: (x0, y0), (x1, y0), (x0, y1), (x1, y1).
+  virtual std::array<std::array<float, 4>, 4> texels(int level, int x0, int x1, int y0, int y1) const {
+    return {texel(level, x0, y0), texel(level, x1, y0), texel(level, x0, y1), texel(level, x1, y1)};
+  }
 };
 
 /// Triangles that share vertices. `primitive_id` is the position in `indices`.

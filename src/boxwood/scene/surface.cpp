@@ -1,17 +1,16 @@
 // surface.cpp: how far from the truth may a position be?
 //
-// Error bounds follow Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8: a
-// position made of rounded operations comes with a bound of what rounding did, and the next ray starts beyond
-// it. To that we add what the leaf test itself may get wrong when it meets the same primitive again from so
-// near, and what a transform rounds away on the way to object space and back.
+// A position made of rounded operations comes with a bound of what rounding did (triangle_point.h), and the
+// next ray starts beyond it. To that we add what a transform rounds away on the way to object space and back.
 #include "boxwood/scene/surface.h"
 
 #include "boxwood/scene/parts.h"
+#include "boxwood/scene/triangle_point.h"
 
 namespace boxwood {
 namespace {
 
-constexpr float u = 0x1p-24f;  // half a unit in the last place of 1
+constexpr float u = kHalfUlp;
 
 /// What the geometry says in its own space.
 struct LocalSurface {
@@ -21,31 +20,9 @@ struct LocalSurface {
   Vec2 uv;
 };
 
-/// How far from the plane of (a, b, c), near `p`, the watertight test could still report a crossing: its
-/// vertices are moved by up to 7u of their distance, and its plane is tilted by the rounding of the cross
-/// product, which matters for slivers.
-float leaf_test_error(const Triangle& t, Vec3 p) {
-  const float reach =
-      std::sqrt(max(length_squared(t.a - p), max(length_squared(t.b - p), length_squared(t.c - p))));
-  const Vec3 e1 = t.b - t.a, e2 = t.c - t.a;
-  const float area_squared = length_squared(cross(e1, e2)),
-              product_squared = length_squared(e1) * length_squared(e2);
-  const float sliver = area_squared > 0 ? std::sqrt(min(product_squared / area_squared, 0x1p24f)) : 1.0f;
-  return reach * (16 * u + 8 * u * sliver);
-}
-
-inline LocalSurface on_triangle(Triangle t, float v_weight, float w_weight) {
-  const float a_weight = 1 - v_weight - w_weight;
-  LocalSurface s;
-  s.position = t.a * a_weight + t.b * v_weight + t.c * w_weight;
-  s.error = (abs(t.a * a_weight) + abs(t.b * v_weight) + abs(t.c * w_weight)) * (8 * u) +
-            splat(leaf_test_error(t, s.position));
-  s.uv = {v_weight, w_weight};
-  return s;
-}
-
-Vec3 blend(Vec3 a, Vec3 b, Vec3 c, float v, float w) {
-  return a * (1 - v - w) + b * v + c * w;
+inline LocalSurface on_triangle(const Triangle& t, float v_weight, float w_weight) {
+  const BoundedPoint point = point_of_triangle(t, v_weight, w_weight);
+  return {point.position, point.error, {0, 0, 0}, {v_weight, w_weight}};
 }
 
 LocalSurface on_mesh(const TriangleMesh& mesh, const Hit& hit) {
@@ -123,35 +100,6 @@ Vec3 spread(const Affine3& m, Vec3 v) {
 
 }  // namespace
 
-namespace {
-
-void prefetch([[maybe_unused]] const void* address) {
-#if defined(__GNUC__)
-  __builtin_prefetch(address);
-#endif
-}
-
-const TriangleMesh* mesh_of(const Scene& scene, const Hit& hit) {
-  if (!hit) return nullptr;
-  return std::get_if<TriangleMesh>(&scene.parts().desc.geometries[hit.geometry_id.value].shapes);
-}
-
-}  // namespace
-
-void prefetch_triangle(const Scene& scene, const Hit& hit) {
-  if (const TriangleMesh* mesh = mesh_of(scene, hit)) prefetch(&mesh->indices[hit.primitive_id.value]);
-}
-
-void prefetch_corners(const Scene& scene, const Hit& hit) {
-  const TriangleMesh* mesh = mesh_of(scene, hit);
-  if (mesh == nullptr) return;
-  for (const std::uint32_t vertex : mesh->indices[hit.primitive_id.value]) {
-    prefetch(&mesh->positions[vertex]);
-    if (!mesh->normals.empty()) prefetch(&mesh->normals[vertex]);
-    if (!mesh->uvs.empty()) prefetch(&mesh->uvs[vertex]);
-  }
-}
-
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   const Scene::Parts& parts = scene.parts();
   const Geometry& geometry = parts.desc.geometries[hit.geometry_id.value];
@@ -203,13 +151,24 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
 }
 
 float Surface::clearance() const {
-  // Far enough to leave the error box; twice, for the rounding of the new origin itself.
-  return 2 * (dot(abs(normal), error) + 2 * u * max_component(abs(position)));
+  return clearance_of(position, error, normal);
 }
 
 Ray Surface::spawn(Vec3 direction, float t_max) const {
   const Vec3 side = dot(normal, direction) < 0 ? -normal : normal;
   return {position + side * clearance(), 0, direction, t_max};
+}
+
+float uv_density(const Scene& scene, const Hit& hit) {
+  const Scene::Parts& parts = scene.parts();
+  const auto* mesh = std::get_if<TriangleMesh>(&parts.desc.geometries[hit.geometry_id.value].shapes);
+  if (mesh == nullptr || mesh->uvs.empty()) return 0;
+  const auto& [i, j, k] = mesh->indices[hit.primitive_id.value];
+  const Affine3& world_from_object = parts.instances[hit.instance_id.value].world_from_object;
+  const Vec2 a = mesh->uvs[i], b = mesh->uvs[j], c = mesh->uvs[k];
+  return uv_density_of(world_from_object.vector(mesh->positions[j] - mesh->positions[i]),
+                       world_from_object.vector(mesh->positions[k] - mesh->positions[i]),
+                       {b.x - a.x, b.y - a.y}, {c.x - a.x, c.y - a.y});
 }
 
 }  // namespace boxwood

@@ -23,13 +23,10 @@ struct Surface {
   float clearance() const;
 };
 
-/// Brings what surface_at() will read for `hit` nearer to the processor, in two steps with some other work
-/// after each: first where the triangle's corners are named, then the corners. Pays where many hits, all over
-/// a large scene, are looked at one after the other. Does nothing for a miss.
-void prefetch_triangle(const Scene& scene, const Hit& hit);
-void prefetch_corners(const Scene& scene, const Hit& hit);
-
 /// Works out the place of `hit`, which `scene` returned for `ray`. Precondition: hit.is_hit().
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
+
+/// How much of uv, on a side, a square of the world of side 1 covers there; 0 where it is not known.
+float uv_density(const Scene& scene, const Hit& hit);
 
 }  // namespace boxwood

@@ -9,9 +9,9 @@
 #include <array>
 #include <cstdint>
 
-#include "boxwood/core/vec.h"
+#include "boxwood/core/ray.h"
 
-namespace boxwood::render {
+namespace boxwood {
 
 /// Small enough for all arrays of a step to lie in the nearest cache.
 inline constexpr int kBlock = 32;
@@ -40,4 +40,17 @@ struct Vec3s {
   }
 };
 
-}  // namespace boxwood::render
+/// Rays that start at t = 0.
+struct RayBlock {
+  Vec3s origin, direction;
+  Floats t_max{};
+
+  Ray operator[](int i) const { return {origin[i], 0, direction[i], t_max[i]}; }
+  void set(int i, const Ray& ray) {
+    origin.set(i, ray.origin);
+    direction.set(i, ray.direction);
+    t_max[i] = ray.t_max;
+  }
+};
+
+}  // namespace boxwood
