@@ -22,8 +22,14 @@ void check_lengths(std::size_t rays, std::size_t hits) {
                                 std::to_string(hits) + " hits, expected the same number");
 }
 
-/// A thread's memory between a kernel and the answers; taken while in use, because a user's own shape may ask
-/// a scene from inside.
+/// A thread's memory between kernels and the answers.
+struct Buffers {
+  std::vector<simd::TriangleHit> found;
+  std::vector<simd::PlacedHit> placed;
+  std::vector<std::uint32_t> order, unusual;
+};
+
+/// The buffers of this thread; taken while in use, because a user's own shape may ask a scene from inside.
 class Scratch {
  public:
   Scratch() : buffers_(std::exchange(spare(), {})) {
@@ -33,14 +39,9 @@ class Scratch {
   ~Scratch() { spare() = std::move(buffers_); }
   Scratch(const Scratch&) = delete;
 
-  simd::TriangleHit* found() { return buffers_.found.data(); }
-  std::vector<std::uint32_t>& unusual() { return buffers_.unusual; }
+  Buffers* operator->() { return &buffers_; }
 
  private:
-  struct Buffers {
-    std::vector<simd::TriangleHit> found;
-    std::vector<std::uint32_t> unusual;
-  };
   static Buffers& spare() {
     static thread_local Buffers mine;
     return mine;
@@ -48,8 +49,8 @@ class Scratch {
   Buffers buffers_;
 };
 
-/// Works out the answers for a scene of triangles only.
-void finish_triangles(const Scene::Parts& parts, std::span<const Ray> rays, const simd::TriangleHit* found,
+/// Works out the answers for the world's triangles.
+void finish_world(const Scene::Parts& parts, std::span<const Ray> rays, const simd::TriangleHit* found,
                       Hit* hits) {
   // A few at a time, so that they are still in the nearest cache when they get their ids.
   constexpr std::size_t kStep = 128;
@@ -75,6 +76,33 @@ void finish_triangles(const Scene::Parts& parts, std::span<const Ray> rays, cons
   }
 }
 
+/// Takes the rays below the placements, where triangles may be hit sooner than `found` says of the world's;
+/// forgets what has been.
+void hit_placed(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scratch) {
+  std::vector<simd::PlacedHit>& placed = scratch->placed;
+  std::vector<std::uint32_t>& order = scratch->order;
+  placed.resize(rays.size());
+  order.clear();
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    const simd::TriangleHit& found = scratch->found[i];
+    placed[i] = {{found.is_hit() ? found.t : rays[i].t_max + 0.0f}};
+    if (found.is_hit()) placed[i].instance = parts.world.mesh_of(found.key).instance_id.value;
+    order.push_back(i);
+  }
+  parts.kernels->closest_hits_below(parts.placed_trees, rays, parts.bounds, order, placed.data(),
+                                    scratch->unusual);
+  for (std::uint32_t i = 0; i < rays.size(); ++i)
+    if (placed[i].is_placed()) scratch->found[i] = {};
+}
+
+/// Works out the answers below placements.
+void finish_placed(const Scene::Parts& parts, std::span<const Ray> rays,
+                   const std::vector<simd::PlacedHit>& placed, Hit* hits) {
+  parts.kernels->finish_hits_below(parts.placed_trees, rays, placed.data(), hits);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (placed[i].is_placed()) detail::name_placed_hit(parts, placed[i], hits[i]);
+}
+
 }  // namespace
 
 namespace detail {
@@ -85,15 +113,29 @@ void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* h
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = walk_closest(parts, rays[i], none);
     return;
   }
+
+  // Find the triangles, in the world and below placements. Rays that are not ordinary are found again by plain
+  // C++ in the end.
   Scratch scratch;
-  simd::TriangleHit* const found = scratch.found();
-  std::vector<std::uint32_t>& unusual = scratch.unusual();
-  parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
-  for (const std::uint32_t i : unusual) found[i] = {};
-  if (parts.is_only_triangles)
-    finish_triangles(parts, rays, found, hits);
+  simd::TriangleHit* const found = scratch->found.data();
+  std::vector<std::uint32_t>& unusual = scratch->unusual;
+  const bool has_world = !parts.world.triangles.is_empty(), has_placed = !parts.placed_trees.is_empty();
+  if (has_world) {
+    parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
+    for (const std::uint32_t i : unusual) found[i] = {};
+  } else {
+    std::fill_n(found, rays.size(), simd::TriangleHit{});
+  }
+  if (has_placed) hit_placed(parts, rays, scratch);
+
+  // Work out the answers.
+  if (has_world)
+    finish_world(parts, rays, found, hits);
   else
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = add_others(parts, rays[i], found[i]);
+    std::fill_n(hits, rays.size(), Hit{});
+  if (has_placed) finish_placed(parts, rays, scratch->placed, hits);
+  if (parts.has_shapes)
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = add_shapes(parts, rays[i], hits[i]);
   for (const std::uint32_t i : unusual) hits[i] = walk_closest(parts, rays[i], none);
 }
 
@@ -103,12 +145,20 @@ void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits
     return;
   }
   Scratch scratch;
-  std::vector<std::uint32_t>& unusual = scratch.unusual();
-  parts.kernels->any_hits(parts.world.triangles, rays, parts.bounds, hits, unusual);
+  std::vector<std::uint32_t>&order = scratch->order, &unusual = scratch->unusual;
+  std::fill_n(hits, rays.size(), false);
+  if (!parts.world.triangles.is_empty())
+    parts.kernels->any_hits(parts.world.triangles, rays, parts.bounds, hits, unusual);
+  if (!parts.placed_trees.is_empty()) {
+    order.clear();
+    for (std::uint32_t i = 0; i < rays.size(); ++i)
+      if (!hits[i]) order.push_back(i);
+    parts.kernels->any_hits_below(parts.placed_trees, rays, parts.bounds, order, hits, unusual);
+  }
+  if (parts.has_shapes)
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!hits[i]) hits[i] = is_shape_hit(parts, rays[i]);
   for (const std::uint32_t i : unusual) hits[i] = walk_any(parts, rays[i]);
-  if (parts.is_only_triangles) return;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!hits[i]) hits[i] = is_other_hit(parts, rays[i]);
 }
 
 }  // namespace detail

@@ -161,6 +161,21 @@ void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options,
   part.bounds = unite(part.triangles.box(), part.shape_bvh.bounds());
 }
 
+/// What kernels walk below the placements of `parts`, which are in the order of their tree.
+template <int W>
+simd::PlacedTrees place_trees(const Scene::Parts& parts, Executor& executor) {
+  std::vector<Box3> boxes;
+  std::vector<simd::PlacedTree> items;
+  for (const Placement& placement : parts.placements) {
+    const Part& object = parts.objects[placement.part_index];
+    const simd::TriangleTree* tree = object.triangles.is_empty() ? nullptr : &object.triangles;
+    boxes.push_back(placement.world_box);
+    items.push_back({placement.object_from_world, placement.world_box, object.bounds, tree,
+                     object.triangles.pool(), object.triangles.box_slack(), placement.instance_id.value});
+  }
+  return {simd::BoxTree(collapse<W>(parts.top_level, executor), boxes), std::move(items)};
+}
+
 /// Why the nearest point of `geometry` under a transform is not known; empty when it is.
 std::string closest_point_obstacle(const Geometry& geometry, bool under_similarity) {
   if (std::holds_alternative<TriangleMesh>(geometry.shapes) ||
@@ -228,16 +243,14 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
                                   " reaches beyond what a float can hold");
   parts->top_level = build_in_leaf_order(
       parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
-  std::vector<Box3> placed_boxes;
-  for (const Placement& placement : parts->placements) placed_boxes.push_back(placement.world_box);
-  parts->placement_tree = width == 4 ? simd::BoxTree(collapse<4>(parts->top_level, executor), placed_boxes)
-                                     : simd::BoxTree(collapse<8>(parts->top_level, executor), placed_boxes);
+  parts->placed_trees = width == 4 ? place_trees<4>(*parts, executor) : place_trees<8>(*parts, executor);
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
-  // Choose who answers for the world's triangles.
-  const simd::TriangleTree& triangles = parts->world.triangles;
-  if (!triangles.is_empty() && triangles.is_ordinary()) parts->kernels = kernels;
-  parts->is_only_triangles = parts->world.shapes.empty() && parts->placements.empty();
+  // Choose who answers.
+  parts->has_shapes = !parts->world.shapes.empty();
+  for (const Part& object : parts->objects) parts->has_shapes |= !object.shapes.empty();
+  parts->is_only_triangles = !parts->has_shapes && parts->placements.empty();
+  if (parts->world.triangles.is_ordinary() && parts->placed_trees.is_ordinary()) parts->kernels = kernels;
 
   parts->build_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

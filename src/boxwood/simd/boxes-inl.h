@@ -14,10 +14,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-/// Calls visit(context, item) for the items whose boxes the ray enters before `limit`, then before what
-/// visit() returned last.
-HWY_NOINLINE inline void visit_boxes_one(const char* pool, const KernelRay& ray, float limit, VisitItem visit,
-                                         void* context) {
+/// Calls visitor.visit(item) for the items whose boxes the ray enters before `limit`, then before what visit()
+/// returned last.
+template <class Visitor>
+HWY_NOINLINE void visit_boxes_one(const char* pool, const KernelRay& ray, float limit, Visitor& visitor) {
   const DIW di;
   const BoxRay<false> box_ray(ray);
   HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
@@ -33,7 +33,7 @@ HWY_NOINLINE inline void visit_boxes_one(const char* pool, const KernelRay& ray,
                     keys + top + 1, refs + top + 1);
       top += count;
     } else {
-      limit = visit(context, BoxTree::item_of(current));
+      limit = visitor.visit(BoxTree::item_of(current));
     }
     const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit) | 7;
     while (keys[top] > limit_key) --top;
