@@ -5,6 +5,7 @@
 // out. A chunk is long enough that the kernel is rarely short of rays, and its findings stay in the cache.
 #include "boxwood/scene/batch.h"
 
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -49,58 +50,71 @@ class Scratch {
   Buffers buffers_;
 };
 
-/// Works out the answers for the world's triangles.
+/// Takes the rays below placements, where triangles may be hit sooner than scratch->found says of the world's;
+/// forgets what is not the first. What is hit there is in scratch->placed.
+void hit_placed(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scratch, const Hit* answers) {
+  const bool has_world = !parts.world.triangles.is_empty();
+  std::vector<simd::PlacedHit>& placed = scratch->placed;
+  placed.resize(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) placed[i] = {{rays[i].t_max + 0.0f}};
+  if (has_world)
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const simd::TriangleHit& found = scratch->found[i];
+      if (!found.is_hit()) continue;
+      placed[i].t = found.t;
+      placed[i].instance = parts.world.mesh_of(found.key).instance_id.value;
+    }
+  scratch->order.resize(rays.size());
+  std::iota(scratch->order.begin(), scratch->order.end(), 0u);
+  parts.kernels->closest_hits_below(parts.placed_trees, rays, parts.bounds, scratch->order, placed.data(),
+                                    answers, scratch->unusual);
+  if (has_world)
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (placed[i].is_placed()) scratch->found[i] = {};
+}
+
+/// Works out answers for the world's triangles.
 void finish_world(const Scene::Parts& parts, std::span<const Ray> rays, const simd::TriangleHit* found,
-                      Hit* hits) {
+                  Hit* hits) {
+  parts.kernels->finish_hits(parts.world.triangles, rays, found, hits);
+  // Without a branch: who hits and who does not is hard to foresee.
+  const auto name = [&](std::size_t i, const PartMesh& mesh) {
+    const std::uint32_t none = 0u - static_cast<std::uint32_t>(!found[i].is_hit());
+    hits[i].instance_id = InstanceId(mesh.instance_id.value | none);
+    hits[i].geometry_id = GeometryId(mesh.geometry_id.value | none);
+    hits[i].primitive_id = PrimId((found[i].key - mesh.first_key) | none);
+  };
+  const std::vector<PartMesh>& meshes = parts.world.meshes;
+  if (meshes.size() == 1) {
+    const PartMesh only = meshes[0];
+    for (std::size_t i = 0; i < rays.size(); ++i) name(i, only);
+  } else {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      name(i, parts.world.mesh_of(found[i].is_hit() ? found[i].key : 0));
+  }
+}
+
+/// Works out answers below placements; leaves others alone.
+void finish_placed(const Scene::Parts& parts, std::span<const Ray> rays, const simd::PlacedHit* placed,
+                   Hit* hits) {
+  parts.kernels->finish_hits_below(parts.placed_trees, rays, placed, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (placed[i].is_placed()) detail::name_placed_hit(parts, placed[i], hits[i]);
+}
+
+/// Works out all answers for triangles.
+void finish(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scratch, Hit* hits) {
   // A few at a time, so that they are still in the nearest cache when they get their ids.
   constexpr std::size_t kStep = 128;
   for (std::size_t begin = 0; begin < rays.size(); begin += kStep) {
-    const std::size_t end = std::min(begin + kStep, rays.size());
-    parts.kernels->finish_hits(parts.world.triangles, rays.subspan(begin, end - begin), found + begin,
-                               hits + begin);
-    // Without a branch: who hits and who does not is hard to foresee.
-    const auto name = [&](std::size_t i, const PartMesh& mesh) {
-      const std::uint32_t none = 0u - static_cast<std::uint32_t>(!found[i].is_hit());
-      hits[i].instance_id = InstanceId(mesh.instance_id.value | none);
-      hits[i].geometry_id = GeometryId(mesh.geometry_id.value | none);
-      hits[i].primitive_id = PrimId((found[i].key - mesh.first_key) | none);
-    };
-    const std::vector<PartMesh>& meshes = parts.world.meshes;
-    if (meshes.size() == 1) {
-      const PartMesh only = meshes[0];
-      for (std::size_t i = begin; i < end; ++i) name(i, only);
-    } else {
-      for (std::size_t i = begin; i < end; ++i)
-        name(i, parts.world.mesh_of(found[i].is_hit() ? found[i].key : 0));
-    }
+    const std::span<const Ray> some = rays.subspan(begin, std::min(kStep, rays.size() - begin));
+    if (!parts.world.triangles.is_empty())
+      finish_world(parts, some, scratch->found.data() + begin, hits + begin);
+    else
+      std::fill_n(hits + begin, some.size(), Hit{});
+    if (!parts.placed_trees.is_empty())
+      finish_placed(parts, some, scratch->placed.data() + begin, hits + begin);
   }
-}
-
-/// Takes the rays below the placements, where triangles may be hit sooner than `found` says of the world's;
-/// forgets what has been.
-void hit_placed(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scratch) {
-  std::vector<simd::PlacedHit>& placed = scratch->placed;
-  std::vector<std::uint32_t>& order = scratch->order;
-  placed.resize(rays.size());
-  order.clear();
-  for (std::uint32_t i = 0; i < rays.size(); ++i) {
-    const simd::TriangleHit& found = scratch->found[i];
-    placed[i] = {{found.is_hit() ? found.t : rays[i].t_max + 0.0f}};
-    if (found.is_hit()) placed[i].instance = parts.world.mesh_of(found.key).instance_id.value;
-    order.push_back(i);
-  }
-  parts.kernels->closest_hits_below(parts.placed_trees, rays, parts.bounds, order, placed.data(),
-                                    scratch->unusual);
-  for (std::uint32_t i = 0; i < rays.size(); ++i)
-    if (placed[i].is_placed()) scratch->found[i] = {};
-}
-
-/// Works out the answers below placements.
-void finish_placed(const Scene::Parts& parts, std::span<const Ray> rays,
-                   const std::vector<simd::PlacedHit>& placed, Hit* hits) {
-  parts.kernels->finish_hits_below(parts.placed_trees, rays, placed.data(), hits);
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (placed[i].is_placed()) detail::name_placed_hit(parts, placed[i], hits[i]);
 }
 
 }  // namespace
@@ -114,26 +128,18 @@ void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* h
     return;
   }
 
-  // Find the triangles, in the world and below placements. Rays that are not ordinary are found again by plain
+  // Find the triangles, in the world and below placements. Rays that are not ordinary are answered by plain
   // C++ in the end.
   Scratch scratch;
-  simd::TriangleHit* const found = scratch->found.data();
   std::vector<std::uint32_t>& unusual = scratch->unusual;
-  const bool has_world = !parts.world.triangles.is_empty(), has_placed = !parts.placed_trees.is_empty();
-  if (has_world) {
+  if (!parts.world.triangles.is_empty()) {
+    simd::TriangleHit* const found = scratch->found.data();
     parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
     for (const std::uint32_t i : unusual) found[i] = {};
-  } else {
-    std::fill_n(found, rays.size(), simd::TriangleHit{});
   }
-  if (has_placed) hit_placed(parts, rays, scratch);
+  if (!parts.placed_trees.is_empty()) hit_placed(parts, rays, scratch, hits);
 
-  // Work out the answers.
-  if (has_world)
-    finish_world(parts, rays, found, hits);
-  else
-    std::fill_n(hits, rays.size(), Hit{});
-  if (has_placed) finish_placed(parts, rays, scratch->placed, hits);
+  finish(parts, rays, scratch, hits);
   if (parts.has_shapes)
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = add_shapes(parts, rays[i], hits[i]);
   for (const std::uint32_t i : unusual) hits[i] = walk_closest(parts, rays[i], none);

@@ -55,7 +55,7 @@ bool are_triangles_hit(const Scene::Parts& parts, const Ray& ray, bool& is_hit);
 /// Says which triangle below a placement was hit.
 inline void name_placed_hit(const Scene::Parts& parts, const simd::PlacedHit& found, Hit& hit) {
   hit.instance_id = InstanceId(found.instance);
-  hit.geometry_id = parts.instances[found.instance].geometry;
+  hit.geometry_id = GeometryId(parts.placed_trees.items()[found.item].geometry);
   hit.primitive_id = PrimId(found.key);  // an object has one mesh, whose keys begin with 0
 }
 

@@ -171,9 +171,10 @@ simd::PlacedTrees place_trees(const Scene::Parts& parts, Executor& executor) {
     const simd::TriangleTree* tree = object.triangles.is_empty() ? nullptr : &object.triangles;
     boxes.push_back(placement.world_box);
     items.push_back({placement.object_from_world, placement.world_box, object.bounds, tree,
-                     object.triangles.pool(), object.triangles.box_slack(), placement.instance_id.value});
+                     object.triangles.pool(), object.triangles.box_slack(), placement.instance_id.value,
+                     parts.instances[placement.instance_id.value].geometry.value});
   }
-  return {simd::BoxTree(collapse<W>(parts.top_level, executor), boxes), std::move(items)};
+  return {simd::BoxTree(collapse<W>(parts.top_level, executor, {.leaf_size = 1}), boxes), std::move(items)};
 }
 
 /// Why the nearest point of `geometry` under a transform is not known; empty when it is.
@@ -241,8 +242,10 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
         !(is_finite(placement.world_box.lower) && is_finite(placement.world_box.upper)))
       throw std::invalid_argument("scene: instance " + std::to_string(placement.instance_id.value) +
                                   " reaches beyond what a float can hold");
+  BuildOptions top_level = options;
+  top_level.leaf_size = 1;  // a tree below each, which costs much more than a box
   parts->top_level = build_in_leaf_order(
-      parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
+      parts->placements, [](const Placement& p) { return p.world_box; }, top_level, executor);
   parts->placed_trees = width == 4 ? place_trees<4>(*parts, executor) : place_trees<8>(*parts, executor);
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 

@@ -27,11 +27,21 @@ HWY_NOINLINE void visit_boxes_one(const char* pool, const KernelRay& ray, float 
   for (std::uint32_t current = 0; current != kBottom;) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
+      const std::int32_t* children = children_of<FullLayout>(node);
       const Slabs slabs = box_ray.template cross<FullLayout>(node, limit);
-      const std::size_t count = hn::CountTrue(di, slabs.enters);
-      push_children(di, make_keys(slabs.entry), slabs.enters, children_of<FullLayout>(node), count,
-                    keys + top + 1, refs + top + 1);
-      top += count;
+      const std::uint32_t bits = mask_bits(di, slabs.enters);
+      if (bits != 0) {
+        if ((bits & (bits - 1)) == 0) {
+          current = static_cast<std::uint32_t>(children[__builtin_ctz(bits)]);
+          continue;
+        }
+        const auto count = static_cast<std::size_t>(__builtin_popcount(bits));
+        push_children(di, make_keys(slabs.entry), slabs.enters, children, count, keys + top + 1,
+                      refs + top + 1);
+        top += count - 1;
+        current = static_cast<std::uint32_t>(refs[top + 1]);
+        continue;
+      }
     } else {
       limit = visitor.visit(BoxTree::item_of(current));
     }

@@ -121,9 +121,9 @@ struct KernelsFor {
   }
 
   static void closest_hits_below(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
-                                 std::span<const std::uint32_t> order, PlacedHit* hits,
+                                 std::span<const std::uint32_t> order, PlacedHit* hits, const Hit* answers,
                                  std::vector<std::uint32_t>& unusual) {
-    trace_placed<Layout, false>(trees, bounds, rays.data(), order, ClosestPlaced{hits}, unusual);
+    trace_placed<Layout, false>(trees, bounds, rays.data(), order, ClosestPlaced{hits, answers}, unusual);
   }
 
   static void any_hits_below(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,

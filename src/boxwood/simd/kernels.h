@@ -115,9 +115,9 @@ struct Kernels {
                             Hit& full);
   bool (*any_hit_below)(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, bool& is_hit);
   /// The same for the rays of which `order` has the indices: hits[i] belongs to rays[i], and is left alone for
-  /// rays whose indices are appended to `unusual`.
+  /// rays whose indices are appended to `unusual`. `answers` as for closest_hits.
   void (*closest_hits_below)(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
-                             std::span<const std::uint32_t> order, PlacedHit* hits,
+                             std::span<const std::uint32_t> order, PlacedHit* hits, const Hit* answers,
                              std::vector<std::uint32_t>& unusual);
   void (*any_hits_below)(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
                          std::span<const std::uint32_t> order, bool* hits,

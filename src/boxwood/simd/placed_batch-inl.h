@@ -13,7 +13,7 @@
 #define BOXWOOD_SIMD_PLACED_BATCH_INL_H
 #endif
 
-#include "boxwood/simd/interleave-inl.h"
+#include "boxwood/simd/batch-inl.h"
 #include "boxwood/simd/placed-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,7 +27,7 @@ struct alignas(64) PlacedRay {
   KernelRay world, local;
   // Where it is: in the world, or below a placement.
   const KernelRay* ray;
-  const char* pool;
+  const char* pools[2];    // of nodes and leaves, and of items
   float limit;             // for boxes and triangles here
   TriangleHit hit;         // below this placement; hit.t is the world's limit
   Moved way;
@@ -107,6 +107,9 @@ class PlacedInterleaved {
  private:
   enum Kind { kNode = 0, kLeaf = 1, kBottomRef = 2, kItemRef = 3 };  // the low bits of a reference
   static_assert(kBottomRef == kBottom && kItemRef == BoxTree::kItem);
+  /// An item takes this many times two more bytes than a unit of references.
+  static constexpr int kItemShift = 2;
+  static_assert(sizeof(PlacedTree) == TriangleTree::kUnit << kItemShift);
   using Lists = PlacedRay* [4][kInFlight + 1];
   struct Ends {
     PlacedRay** of[4];
@@ -123,13 +126,14 @@ class PlacedInterleaved {
   HWY_INLINE void append(PlacedRay& ray, std::int32_t* top, Ends& ends) {
     ray.top = top;
     const auto next = static_cast<std::uint32_t>(*top);
-    const std::uint32_t kind = next & 3;
-    const char* item = reinterpret_cast<const char*>(items_ + BoxTree::item_of(next));
-    prefetch_lines<Layout::kNodeLines>(kind == kItemRef ? item : node_at(ray.pool, next));
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      *ends.of[k] = &ray;
-      ends.of[k] += kind == k;
-    }
+    const std::uint32_t low = next & 1, high = next >> 1 & 1, is_item = low & high;
+    prefetch_lines<Layout::kNodeLines>(ray.pools[is_item] +
+                                       (std::size_t(next & ~15u) << (1 + kItemShift * is_item)));
+    for (PlacedRay** end_of : ends.of) *end_of = &ray;
+    ends.of[kNode] += (low | high) ^ 1;
+    ends.of[kLeaf] += low & ~high;
+    ends.of[kBottomRef] += high & ~low;
+    ends.of[kItemRef] += is_item;
   }
 
   /// Gives the place to the next ray that is ordinary; false when there is none left.
@@ -143,7 +147,8 @@ class PlacedInterleaved {
       }
       place.best = output_.before(i);
       place.ray = &place.world;
-      place.pool = world_pool_;
+      place.pools[0] = world_pool_;
+      place.pools[1] = reinterpret_cast<const char*>(items_);
       place.limit = place.hit.t = place.best.t;
       place.ray_index = i;
       place.refs[0] = static_cast<std::int32_t>(kBottom);
@@ -166,7 +171,7 @@ class PlacedInterleaved {
   HWY_INLINE std::int32_t* step_in(PlacedRay& ray) {
     const DIW di;
     std::int32_t* top = ray.top;
-    const char* node = node_at(ray.pool, static_cast<std::uint32_t>(*top));
+    const char* node = node_at(ray.pools[0], static_cast<std::uint32_t>(*top));
     const Slabs slabs = BoxRay<true>(*ray.ray).template cross<NodeLayout>(node, ray.limit);
     const std::int32_t* children = children_of<NodeLayout>(node);
     const std::size_t count = hn::CountTrue(di, slabs.enters);
@@ -184,7 +189,7 @@ class PlacedInterleaved {
     for (PlacedRay** i = lists_[kLeaf]; i != end; ++i) {
       PlacedRay* ray = *i;
       const auto ref = static_cast<std::uint32_t>(*ray->top);
-      const char* block = blocks_at(ray->pool, ref);
+      const char* block = blocks_at(ray->pools[0], ref);
       for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
         open->ray = ray;
         open->block = block;
@@ -202,7 +207,7 @@ class PlacedInterleaved {
       if (o->lanes == 0) continue;
       PlacedRay& ray = *o->ray;
       const TriangleBlock& block = Layout::block(o->block);
-      if (!take_closest(block, units(ray.pool, o->block), o->lanes, o->ts, ray.hit, ray.way)) continue;
+      if (!take_closest(block, units(ray.pools[0], o->block), o->lanes, o->ts, ray.hit, ray.way)) continue;
       if constexpr (kAny) {
         ray.top = ray.bottom + 1;  // nothing else matters: the bottom is next
       } else {
@@ -242,7 +247,7 @@ class PlacedInterleaved {
       return;
     }
     ray.ray = &ray.local;
-    ray.pool = placed.pool;
+    ray.pools[0] = placed.pool;
     ray.item = item;
     ray.hit = {ray.best.t, tie_key(placed, ray.best.instance)};
     ray.limit = ray.way.limit(ray.best.t);
@@ -260,7 +265,7 @@ class PlacedInterleaved {
       top = kAny ? ray.refs + 1 : cull(ray.refs + 1, top, ray.best.t);
     }
     ray.ray = &ray.world;
-    ray.pool = world_pool_;
+    ray.pools[0] = world_pool_;
     ray.limit = ray.best.t;
     ray.bottom = ray.refs;
     append(ray, top - 1, ends);
@@ -281,8 +286,12 @@ class PlacedInterleaved {
 /// found[i] is what is to be beaten, and becomes what is hit; its t the limit.
 struct ClosestPlaced {
   PlacedHit* found;
+  const Hit* answers;
   HWY_INLINE const PlacedHit& before(std::uint32_t i) const { return found[i]; }
-  HWY_INLINE void operator()(std::uint32_t i, const PlacedHit& hit) const { found[i] = hit; }
+  HWY_INLINE void operator()(std::uint32_t i, const PlacedHit& hit) const {
+    found[i] = hit;
+    fetch_answer(answers, i);
+  }
 };
 struct AnyPlaced {
   const Ray* rays;

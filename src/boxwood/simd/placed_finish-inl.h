@@ -116,11 +116,13 @@ template <class Layout>
 void finish_all_placed(const PlacedTrees& trees, std::span<const Ray> rays, const PlacedHit* found, Hit* hits) {
   HitList list;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!found[i].is_placed()) continue;
+    // Without a branch: who hits is hard to foresee.
+    const std::uint32_t is_hit = found[i].is_placed(), mask = 0u - is_hit;
     const char* block =
-        trees.items()[found[i].item].pool + std::size_t(found[i].block) * TriangleTree::kUnit;
+        trees.items()[found[i].item & mask].pool + std::size_t(found[i].block & mask) * TriangleTree::kUnit;
     for (int line = 0; line < 3; ++line) __builtin_prefetch(block + 64 * line);
-    list.ray_index[list.count++] = static_cast<std::uint32_t>(i);
+    list.ray_index[list.count] = static_cast<std::uint32_t>(i);
+    list.count += is_hit;
     if (list.count == HitList::kSize) finish_placed_list<Layout>(list, trees, rays.data(), found, hits);
   }
   finish_placed_list<Layout>(list, trees, rays.data(), found, hits);

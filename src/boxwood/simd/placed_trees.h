@@ -21,6 +21,7 @@ struct alignas(64) PlacedTree {
   const char* pool;               ///< The tree's; and
   float box_slack;                ///< so is this.
   std::uint32_t instance;         ///< The caller's name; equal t goes to the smaller one.
+  std::uint32_t geometry;         ///< The caller's, and not looked at by kernels.
 };
 static_assert(sizeof(PlacedTree) == 128);
 
