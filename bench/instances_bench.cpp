@@ -247,8 +247,9 @@ void run(int argc, char** argv) {
       throw std::invalid_argument("no option " + word);
   }
   const TriangleMesh mesh = file.empty() ? bumpy_sphere() : mesh_of(file);
-  std::printf("| copies | rays | single (over Embree) | batch (over Embree) | Embree single | hits |\n"
-              "|---|---|---|---|---|---|\n");
+  std::printf(
+      "| copies | rays | single (over Embree) | batch (over Embree) | Embree single | hits |\n"
+      "|---|---|---|---|---|---|\n");
   for (const std::string& count : split(counts)) {
     const std::vector<Affine3> placed = places(mesh, std::stoul(count));
     SceneDesc desc;

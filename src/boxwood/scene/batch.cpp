@@ -50,8 +50,8 @@ class Scratch {
   Buffers buffers_;
 };
 
-/// Takes the rays below placements, where triangles may be hit sooner than scratch->found says of the world's;
-/// forgets what is not the first. What is hit there is in scratch->placed.
+/// Takes the rays below placements, where triangles may be hit sooner than scratch->found says of the
+/// world's; forgets what is not the first. What is hit there is in scratch->placed.
 void hit_placed(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scratch, const Hit* answers) {
   const bool has_world = !parts.world.triangles.is_empty();
   std::vector<simd::PlacedHit>& placed = scratch->placed;

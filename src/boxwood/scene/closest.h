@@ -47,8 +47,8 @@ inline Hit finish_triangle(const Scene::Parts& parts, const Ray& ray, const simd
 /// Works out the normal from the description.
 void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit);
 
-/// Has kernels find the first hit on a triangle, in the world and below placements; false when they do not take
-/// the ray.
+/// Has kernels find the first hit on a triangle, in the world and below placements; false when they do not
+/// take the ray.
 bool hit_triangles(const Scene::Parts& parts, const Ray& ray, Hit& hit);
 bool are_triangles_hit(const Scene::Parts& parts, const Ray& ray, bool& is_hit);
 

@@ -246,8 +246,8 @@ bool visit_placements(const Scene::Parts& parts, const PreparedRay& ray, Query& 
     asked.visit(PrimId(item));
     return asked.limit();
   };
-  return kernels->visit_boxes(boxes, {ray.origin, ray.t_min, ray.direction, query.limit()},
-                              parts.bounds, visit, &query);
+  return kernels->visit_boxes(boxes, {ray.origin, ray.t_min, ray.direction, query.limit()}, parts.bounds,
+                              visit, &query);
 }
 
 /// Shows `sink` everything that `ray` may meet but the world's triangles, or all other shapes:

@@ -99,6 +99,7 @@ BoxTree::BoxTree(const WideBvh<W>& wide, std::span<const Box3> boxes) : width_(W
       if (child.is_empty()) continue;
       child = child.is_leaf() ? ChildRef{child.index() << 4 | kItem} : ChildRef::node(child.index() * kUnits);
     }
+  if (nodes.size() == 1 && reach.max_stack == 1) first_ = nodes[0].children[0].bits;
   pool_ = MemoryBlock(nodes.size() * sizeof(WideNode<W>), 64);
   std::memcpy(pool_.data(), nodes.data(), pool_.size());
 }

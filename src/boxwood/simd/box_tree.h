@@ -27,6 +27,8 @@ class BoxTree {
   bool is_empty() const { return pool_.size() == 0; }
   /// Whether kernels may walk it: its boxes lie where no float overflows, and not too deep for their stack.
   bool is_ordinary() const { return is_ordinary_; }
+  /// Where a walk begins: at the root node, or at the only item, which knows its own box.
+  std::uint32_t first() const { return first_; }
   /// The most children that a walk ever leaves behind for later.
   int max_stack() const { return max_stack_; }
   int width() const { return width_; }
@@ -39,6 +41,7 @@ class BoxTree {
 
  private:
   MemoryBlock pool_;
+  std::uint32_t first_ = 0;
   int width_ = 8, max_stack_ = 0;
   bool is_ordinary_ = true;
 };

@@ -14,17 +14,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-/// Calls visitor.visit(item) for the items whose boxes the ray enters before `limit`, then before what visit()
-/// returned last.
+/// Calls visitor.visit(item) for the items whose boxes the ray enters before `limit`, then before what
+/// visit() returned last; begins at `current`.
 template <class Visitor>
-HWY_NOINLINE void visit_boxes_one(const char* pool, const KernelRay& ray, float limit, Visitor& visitor) {
+HWY_NOINLINE void visit_boxes_one(const char* pool, std::uint32_t current, const KernelRay& ray, float limit,
+                                  Visitor& visitor) {
   const DIW di;
   const BoxRay<false> box_ray(ray);
   HWY_ALIGN std::int32_t keys[kStackSize], refs[kStackSize];
   keys[0] = std::numeric_limits<std::int32_t>::min();  // below every limit
   refs[0] = static_cast<std::int32_t>(kBottom);
   std::size_t top = 0;
-  for (std::uint32_t current = 0; current != kBottom;) {
+  while (current != kBottom) {
     if ((current & 3) == 0) {
       const char* node = node_at(pool, current);
       const std::int32_t* children = children_of<FullLayout>(node);

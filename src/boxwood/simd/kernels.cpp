@@ -103,7 +103,7 @@ struct KernelsFor {
     KernelRay world;
     if (!prepare(ray, bounds, BoxTree::kSlack, world)) return false;
     PlacedWalk<Layout> walk{trees, ray, world, hit};
-    visit_boxes_one(trees.boxes().pool(), world, hit.t, walk);
+    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
     if (walk.is_unusual) return false;
     hit = walk.hit;
     if (hit.is_placed()) finish_one_placed<Layout>(trees, walk.local[walk.winner], hit, full);
@@ -114,7 +114,7 @@ struct KernelsFor {
     KernelRay world;
     if (!prepare(ray, bounds, BoxTree::kSlack, world)) return false;
     PlacedSearch<Layout> search{trees, ray, world, ray.t_max + 0.0f};
-    visit_boxes_one(trees.boxes().pool(), world, search.limit, search);
+    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, search.limit, search);
     if (search.is_unusual) return false;
     is_hit = search.is_hit;
     return true;
@@ -168,7 +168,7 @@ bool visit_boxes(const BoxTree& tree, const Ray& ray, const Box3& bounds, VisitI
     void* context;
     float visit(std::uint32_t item) const { return call(context, item); }
   } caller{visit, context};
-  visit_boxes_one(tree.pool(), kernel_ray, ray.t_max + 0.0f, caller);
+  visit_boxes_one(tree.pool(), 0, kernel_ray, ray.t_max + 0.0f, caller);
   return true;
 }
 

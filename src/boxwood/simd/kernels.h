@@ -107,15 +107,15 @@ struct Kernels {
   void (*finish_hits)(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
                       Hit* hits);
 
-  /// The first crossing of a triangle below a placement that comes before `hit`, equal t by (instance, key): t
-  /// counts as far as hit.t, and equal to that for instances below hit.instance. Fills `full`, but for the ids,
-  /// when there is one. `bounds` are the world's. Precondition, here and below: trees.is_ordinary(), and they
-  /// are not empty. False also for a ray that is not ordinary in the space of an object.
+  /// The first crossing of a triangle below a placement that comes before `hit`, equal t by (instance, key):
+  /// t counts as far as hit.t, and equal to that for instances below hit.instance. Fills `full`, but for the
+  /// ids, when there is one. `bounds` are the world's. Precondition, here and below: trees.is_ordinary(), and
+  /// they are not empty. False also for a ray that is not ordinary in the space of an object.
   bool (*closest_hit_below)(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, PlacedHit& hit,
                             Hit& full);
   bool (*any_hit_below)(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, bool& is_hit);
-  /// The same for the rays of which `order` has the indices: hits[i] belongs to rays[i], and is left alone for
-  /// rays whose indices are appended to `unusual`. `answers` as for closest_hits.
+  /// The same for the rays of which `order` has the indices: hits[i] belongs to rays[i], and is left alone
+  /// for rays whose indices are appended to `unusual`. `answers` as for closest_hits.
   void (*closest_hits_below)(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
                              std::span<const std::uint32_t> order, PlacedHit* hits, const Hit* answers,
                              std::vector<std::uint32_t>& unusual);

@@ -1,5 +1,5 @@
-// placed_batch-inl.h: many independent rays through two levels of trees, on one thread. Compiled once for each
-// instruction set.
+// placed_batch-inl.h: many independent rays through two levels of trees, on one thread. Compiled once for
+// each instruction set.
 //
 // As in interleave-inl.h rays take turns, and here one that comes to a placement goes on in its object's
 // space: it waits on a list of its own until it is taken there, leaves a bottom on its stack, and when it is
@@ -19,6 +19,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
+/// As kFewNodes; fewer, because there are three other lists to wait on.
+inline constexpr int kPlacedFewNodes = 10;
 /// Room for both levels; deeper trees take one ray at a time.
 inline constexpr int kPlacedStack = 192;
 
@@ -27,15 +29,15 @@ struct alignas(64) PlacedRay {
   KernelRay world, local;
   // Where it is: in the world, or below a placement.
   const KernelRay* ray;
-  const char* pools[2];    // of nodes and leaves, and of items
-  float limit;             // for boxes and triangles here
-  TriangleHit hit;         // below this placement; hit.t is the world's limit
+  const char* pools[2];  // of nodes and leaves, and of items
+  float limit;           // for boxes and triangles here
+  TriangleHit hit;       // below this placement; hit.t is the world's limit
   Moved way;
   std::uint32_t item;
-  std::int32_t* bottom;    // of the stack here
+  std::int32_t* bottom;  // of the stack here
   std::int32_t* top;
   std::uint32_t ray_index;
-  PlacedHit best;          // in what it has left behind
+  PlacedHit best;  // in what it has left behind
   std::int32_t refs[kPlacedStack];
   std::int32_t keys[kPlacedStack];
 
@@ -56,9 +58,9 @@ class PlacedInterleaved {
  public:
   /// Traces rays[i] for each i of `order`, up to limit_of(i), and hands over what it finds.
   PlacedInterleaved(const PlacedTrees& trees, const Box3& bounds, const Ray* rays,
-                    std::span<const std::uint32_t> order, Output& output,
-                    std::vector<std::uint32_t>& unusual)
+                    std::span<const std::uint32_t> order, Output& output, std::vector<std::uint32_t>& unusual)
       : world_pool_(trees.boxes().pool()),
+        first_(static_cast<std::int32_t>(trees.boxes().first())),
         items_(trees.items().data()),
         bounds_(bounds),
         rays_(rays),
@@ -68,14 +70,13 @@ class PlacedInterleaved {
 
   void run(PlacedRay* flight) {
     Ends ends{{lists_[kNode], lists_[kLeaf], lists_[kBottomRef], lists_[kItemRef]}};
-    for (int i = 0; i < kInFlight; ++i)
-      if (start(flight[i])) *ends.of[kNode]++ = flight + i;
+    for (int i = 0; i < kInFlight; ++i) start(flight[i], ends);
 
     while (true) {
       // One step for every ray that stands before a node.
       PlacedRay **i = lists_[kNode], **end = ends.take(lists_, kNode);
       for (; i != end; ++i) append(**i, step(**i), ends);
-      if (ends.of[kNode] - lists_[kNode] > kFewNodes) continue;
+      if (ends.of[kNode] - lists_[kNode] > kPlacedFewNodes) continue;
 
       // Enough rays stand before something else. Leaves are tested, taken off the stack, and left.
       visit_leaves(ends.of[kLeaf]);
@@ -86,14 +87,14 @@ class PlacedInterleaved {
       i = lists_[kItemRef], end = ends.take(lists_, kItemRef);
       for (; i != end; ++i) enter_item(**i, ends);
 
-      // Below a placement the bottom leads back into the world, there to the end: hand out the answer and start
-      // another ray in its place.
+      // Below a placement the bottom leads back into the world, there to the end: hand out the answer and
+      // start another ray in its place.
       i = lists_[kBottomRef], end = ends.take(lists_, kBottomRef);
       for (; i != end; ++i) {
         PlacedRay& ray = **i;
         if (ray.is_in_world()) {
           output_(ray.ray_index, ray.best);
-          if (start(ray)) *ends.of[kNode]++ = &ray;
+          start(ray, ends);
         } else {
           leave_item(ray, ends);
         }
@@ -136,8 +137,8 @@ class PlacedInterleaved {
     ends.of[kItemRef] += is_item;
   }
 
-  /// Gives the place to the next ray that is ordinary; false when there is none left.
-  HWY_INLINE bool start(PlacedRay& place) {
+  /// Gives the place to the next ray that is ordinary, if there is one.
+  HWY_INLINE void start(PlacedRay& place, Ends& ends) {
     while (next_ < order_.size()) {
       const std::uint32_t i = order_[next_++];
       __builtin_prefetch(&rays_[i] + 8);  // neighbours in the order are mostly neighbours in memory
@@ -153,12 +154,11 @@ class PlacedInterleaved {
       place.ray_index = i;
       place.refs[0] = static_cast<std::int32_t>(kBottom);
       place.keys[0] = 0;
-      place.refs[1] = 0;
+      place.refs[1] = first_;
       place.bottom = place.refs;
-      place.top = place.refs + 1;
-      return true;
+      append(place, place.refs + 1, ends);
+      return;
     }
-    return false;
   }
 
   /// Puts the children that the ray enters in the place of the node on top.
@@ -243,7 +243,7 @@ class PlacedInterleaved {
     }
     if (HWY_UNLIKELY(entry == Entry::is_unusual)) {
       unusual_.push_back(ray.ray_index);
-      if (start(ray)) *ends.of[kNode]++ = &ray;
+      start(ray, ends);
       return;
     }
     ray.ray = &ray.local;
@@ -272,6 +272,7 @@ class PlacedInterleaved {
   }
 
   const char* world_pool_;
+  std::int32_t first_;
   const PlacedTree* items_;
   const Box3& bounds_;
   const Ray* rays_;
@@ -319,12 +320,12 @@ void trace_placed(const PlacedTrees& trees, const Box3& bounds, const Ray* rays,
     bool is_unusual = false;
     if constexpr (kAny) {
       PlacedSearch<Layout> search{trees, rays[i], world, hit.t};
-      visit_boxes_one(trees.boxes().pool(), world, hit.t, search);
+      visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, search);
       if (search.is_hit) hit.item = 0;
       is_unusual = search.is_unusual;
     } else {
       PlacedWalk<Layout> walk{trees, rays[i], world, hit};
-      visit_boxes_one(trees.boxes().pool(), world, hit.t, walk);
+      visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
       hit = walk.hit;
       is_unusual = walk.is_unusual;
     }

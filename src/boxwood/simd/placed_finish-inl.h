@@ -35,7 +35,8 @@ HWY_INLINE void finish_placed_group(const PlacedTrees& trees, const Ray* rays, c
   HWY_ALIGN std::int32_t item_at[kFinished];
   for (std::size_t n = 0; n < kFinished; ++n) {
     const PlacedHit& hit = found[ray_index[n]];
-    const TriangleBlock& block = Layout::block(items[hit.item].pool + std::size_t(hit.block) * TriangleTree::kUnit);
+    const TriangleBlock& block =
+        Layout::block(items[hit.item].pool + std::size_t(hit.block) * TriangleTree::kUnit);
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) vertices[i][k][n] = block.v[i][k][hit.lane];
     item_at[n] = static_cast<std::int32_t>(hit.item * (sizeof(PlacedTree) / sizeof(float)));
@@ -58,7 +59,8 @@ HWY_INLINE void finish_placed_group(const PlacedTrees& trees, const Ray* rays, c
   VF origin[3], direction[3], normal[3];
   for (int k = 0; k < 3; ++k) {
     const auto sum = [&](const VF(&of)[3]) {
-      return hn::Add(hn::Add(hn::Mul(map[0][k], of[0]), hn::Mul(map[1][k], of[1])), hn::Mul(map[2][k], of[2]));
+      return hn::Add(hn::Add(hn::Mul(map[0][k], of[0]), hn::Mul(map[1][k], of[1])),
+                     hn::Mul(map[2][k], of[2]));
     };
     origin[k] = hn::Add(sum(o), map[3][k]);
     direction[k] = sum(dir);
@@ -113,7 +115,8 @@ void finish_placed_list(HitList& list, const PlacedTrees& trees, const Ray* rays
 }
 
 template <class Layout>
-void finish_all_placed(const PlacedTrees& trees, std::span<const Ray> rays, const PlacedHit* found, Hit* hits) {
+void finish_all_placed(const PlacedTrees& trees, std::span<const Ray> rays, const PlacedHit* found,
+                       Hit* hits) {
   HitList list;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Without a branch: who hits is hard to foresee.

@@ -15,13 +15,13 @@ namespace boxwood::simd {
 /// Two lines of the cache, which say all that a ray must know to go on.
 struct alignas(64) PlacedTree {
   Affine3 object_from_world;
-  Box3 world_box;                 ///< The gate of what is placed (shape/gate.h).
-  Box3 bounds;                    ///< Those of the object, in its own space.
-  const TriangleTree* tree;       ///< Null where the object has no triangles; must outlive this.
-  const char* pool;               ///< The tree's; and
-  float box_slack;                ///< so is this.
-  std::uint32_t instance;         ///< The caller's name; equal t goes to the smaller one.
-  std::uint32_t geometry;         ///< The caller's, and not looked at by kernels.
+  Box3 world_box;            ///< The gate of what is placed (shape/gate.h).
+  Box3 bounds;               ///< Those of the object, in its own space.
+  const TriangleTree* tree;  ///< Null where the object has no triangles; must outlive this.
+  const char* pool;          ///< The tree's; and
+  float box_slack;           ///< so is this.
+  std::uint32_t instance;    ///< The caller's name; equal t goes to the smaller one.
+  std::uint32_t geometry;    ///< The caller's, and not looked at by kernels.
 };
 static_assert(sizeof(PlacedTree) == 128);
 
