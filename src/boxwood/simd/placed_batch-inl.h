@@ -21,8 +21,9 @@ namespace boxwood::simd::HWY_NAMESPACE {
 
 /// As kFewNodes; fewer, because there are three other lists to wait on.
 inline constexpr int kPlacedFewNodes = 10;
-/// Room for both levels; deeper trees take one ray at a time.
-inline constexpr int kPlacedStack = 192;
+/// Room for both levels; deeper trees take one ray at a time. With this much a ray takes an odd number of lines
+/// of the cache, so that what is in use of many rays does not meet in few sets of it.
+inline constexpr int kPlacedStack = 200;
 
 /// A ray and where it stands: *top is what it visits next, and top[kPlacedStack] its key.
 struct alignas(64) PlacedRay {
@@ -43,6 +44,8 @@ struct alignas(64) PlacedRay {
 
   bool is_in_world() const { return ray == &world; }
 };
+
+static_assert(sizeof(PlacedRay) / kLine % 2 == 1);
 
 /// A block whose planes are still to be tested, and then what the test says.
 struct OpenPlacedBlock {
