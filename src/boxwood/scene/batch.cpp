@@ -112,7 +112,7 @@ void finish(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scrat
       finish_world(parts, some, scratch->found.data() + begin, hits + begin);
     else
       std::fill_n(hits + begin, some.size(), Hit{});
-    if (!parts.placed_trees.is_empty())
+    if (parts.placed_trees.has_triangles())
       finish_placed(parts, some, scratch->placed.data() + begin, hits + begin);
   }
 }
@@ -137,7 +137,7 @@ void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* h
     parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
     for (const std::uint32_t i : unusual) found[i] = {};
   }
-  if (!parts.placed_trees.is_empty()) hit_placed(parts, rays, scratch, hits);
+  if (parts.placed_trees.has_triangles()) hit_placed(parts, rays, scratch, hits);
 
   finish(parts, rays, scratch, hits);
   if (parts.has_shapes)
@@ -155,7 +155,7 @@ void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits
   std::fill_n(hits, rays.size(), false);
   if (!parts.world.triangles.is_empty())
     parts.kernels->any_hits(parts.world.triangles, rays, parts.bounds, hits, unusual);
-  if (!parts.placed_trees.is_empty()) {
+  if (parts.placed_trees.has_triangles()) {
     order.clear();
     for (std::uint32_t i = 0; i < rays.size(); ++i)
       if (!hits[i]) order.push_back(i);

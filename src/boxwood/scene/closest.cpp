@@ -82,7 +82,7 @@ bool hit_triangles(const Scene::Parts& parts, const Ray& ray, Hit& hit) {
       placed.instance = hit.instance_id.value;
     }
   }
-  if (parts.placed_trees.is_empty()) return true;
+  if (!parts.placed_trees.has_triangles()) return true;
   if (!parts.kernels->closest_hit_below(parts.placed_trees, ray, parts.bounds, placed, hit)) return false;
   if (placed.is_placed()) name_placed_hit(parts, placed, hit);
   return true;
@@ -94,7 +94,7 @@ bool are_triangles_hit(const Scene::Parts& parts, const Ray& ray, bool& is_hit) 
     if (!parts.kernels->any_hit(parts.world.triangles, ray, parts.bounds, is_hit)) return false;
     if (is_hit) return true;
   }
-  return parts.placed_trees.is_empty() ||
+  return !parts.placed_trees.has_triangles() ||
          parts.kernels->any_hit_below(parts.placed_trees, ray, parts.bounds, is_hit);
 }
 

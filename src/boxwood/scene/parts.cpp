@@ -250,8 +250,8 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
   // Choose who answers.
-  parts->has_shapes = !parts->world.shapes.empty();
-  for (const Part& object : parts->objects) parts->has_shapes |= !object.shapes.empty();
+  for (const Part& object : parts->objects) parts->has_placed_shapes |= !object.shapes.empty();
+  parts->has_shapes = parts->has_placed_shapes || !parts->world.shapes.empty();
   parts->is_only_triangles = !parts->has_shapes && parts->placements.empty();
   if (parts->world.triangles.is_ordinary() && parts->placed_trees.is_ordinary()) parts->kernels = kernels;
 

@@ -74,7 +74,8 @@ struct Scene::Parts {
   Box3 bounds;
   /// Those for all triangles; null when plain C++ is to walk.
   const simd::Kernels* kernels = nullptr;
-  bool has_shapes = false;         ///< Other than triangles, anywhere.
+  bool has_shapes = false;         ///< Other than triangles, anywhere;
+  bool has_placed_shapes = false;  ///< and below placements.
   bool is_only_triangles = false;  ///< The world's: no other shape and no placement.
   /// The kernels, when there are triangles in the world.
   const simd::Kernels* world_kernels() const { return world.triangles.is_empty() ? nullptr : kernels; }

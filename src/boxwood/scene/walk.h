@@ -256,6 +256,7 @@ template <class Sink, class Statistics>
 void walk_others(const Scene::Parts& parts, const PreparedRay& ray, Show show, Sink& sink,
                  Statistics& statistics) {
   walk_shapes(parts, parts.world, ray, NoPlacement{}, sink, statistics);
+  if (show == Show::other_shapes && !parts.has_placed_shapes) return;
   PlacementQuery<Sink, Statistics> placements(parts, ray, show, sink, statistics);
   if (!std::is_same_v<Statistics, NoStatistics> || !visit_placements(parts, ray, placements))
     traverse(parts.top_level, placements, statistics);

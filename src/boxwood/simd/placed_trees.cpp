@@ -12,6 +12,7 @@ PlacedTrees::PlacedTrees(BoxTree boxes, std::vector<PlacedTree> items)
   is_ordinary_ = boxes_.is_ordinary() && items_.size() < kMostItems;
   for (const PlacedTree& item : items_) {
     if (!item.tree) continue;
+    has_triangles_ = true;
     is_ordinary_ = is_ordinary_ && item.tree->is_ordinary();
     max_stack_ = std::max(max_stack_, item.tree->max_stack());
     layout_ = item.tree->layout();

@@ -31,7 +31,9 @@ class PlacedTrees {
   /// items[i] stands in the i-th box of `boxes`; all trees have one layout, and keys less than 2^32 - 1.
   PlacedTrees(BoxTree boxes, std::vector<PlacedTree> items);
 
+  /// Whether there are no items at all; whether there are triangles below any.
   bool is_empty() const { return boxes_.is_empty(); }
+  bool has_triangles() const { return has_triangles_; }
   /// Whether kernels may walk them: all trees are ordinary.
   bool is_ordinary() const { return is_ordinary_; }
   /// The most that a walk through both levels ever leaves behind for later.
@@ -44,7 +46,7 @@ class PlacedTrees {
  private:
   BoxTree boxes_;
   std::vector<PlacedTree> items_;
-  bool is_ordinary_ = true;
+  bool is_ordinary_ = true, has_triangles_ = false;
   int max_stack_ = 0;
   Layout layout_ = Layout::full;
 };
