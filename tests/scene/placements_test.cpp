@@ -156,16 +156,23 @@ TEST(Placements, TiesGoToTheFirstInstance) {
 
 // Some rays are ordinary in the world and not in an object's space, and some objects are not ordinary at all.
 TEST(Placements, OfAnySize) {
-  for (const auto& [size, scale] : {std::pair{0x1p-20f, 0x1p40f}, {0x1p-40f, 0x1p45f}, {0x1p40f, 0x1p-40f},
-                                    {1.0f, 0x1p40f}, {1.0f, 0x1p60f}, {0x1p-60f, 1.0f}, {0x1p30f, 0x1p-60f}}) {
+  for (const auto& [size, scale] : {std::pair{0x1p-20f, 0x1p40f},
+                                    {0x1p-40f, 0x1p45f},
+                                    {0x1p40f, 0x1p-40f},
+                                    {1.0f, 0x1p40f},
+                                    {1.0f, 0x1p60f},
+                                    {0x1p-60f, 1.0f},
+                                    {0x1p30f, 0x1p-60f}}) {
     SCOPED_TRACE(testing::Message() << size << " times " << scale);
     TriangleMesh large = mesh_of(test::triangle_soup(60));
     for (Vec3& p : large.positions) p = p * size;
     SceneDesc desc;
     const GeometryId ids[] = {desc.add(large), desc.add(mesh_of(test::sponge(1)))};
     for (int i = 0; i < 3; ++i)
-      desc.add({ids[0], Affine3::translation(splat(float(i))) * Affine3::rotation({1, 2, float(i)}, 50) *
-                            Affine3::scale(scale), {}});
+      desc.add({ids[0],
+                Affine3::translation(splat(float(i))) * Affine3::rotation({1, 2, float(i)}, 50) *
+                    Affine3::scale(scale),
+                {}});
     desc.add({ids[1], Affine3::translation({1, 2, 3}), {}});
     const Scene scene(std::move(desc));
     EXPECT_GT(check_all(scene, rays_among_placements(scene, 1'000, 6), true), 50u);
@@ -183,8 +190,10 @@ TEST(Placements, OfDeepTrees) {
   SceneDesc desc;
   const GeometryId id = desc.add(row);
   for (int i = 0; i < 120; ++i)
-    desc.add({id, Affine3::translation({std::ldexp(1.0f, i / 4 - 15) * (1 + 0.25f * float(i % 4)), 0, 0}) *
-                      Affine3::scale(0.5f), {}});
+    desc.add({id,
+              Affine3::translation({std::ldexp(1.0f, i / 4 - 15) * (1 + 0.25f * float(i % 4)), 0, 0}) *
+                  Affine3::scale(0.5f),
+              {}});
   BuildOptions options;
   options.method = Method::longest_axis;
   options.leaf_size = 1;

@@ -118,7 +118,8 @@ inline std::size_t check_all(const Scene& scene, const std::vector<Ray>& rays, b
   const auto two = make_executor(2);
   std::vector<Hit> batch(rays.size());
   const std::unique_ptr<bool[]> is_hit(new bool[rays.size()]);
-  for (const std::size_t size : {std::size_t(1), std::size_t(7), std::size_t(33), std::size_t(700), rays.size()})
+  for (const std::size_t size :
+       {std::size_t(1), std::size_t(7), std::size_t(33), std::size_t(700), rays.size()})
     for (Executor* executor : {&serial_executor(), two.get()}) {
       batch.assign(rays.size(), Hit{});
       for (std::size_t begin = 0; begin < rays.size(); begin += size) {

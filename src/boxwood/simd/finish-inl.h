@@ -226,14 +226,15 @@ void finish_all(const TriangleTree& tree, std::span<const Ray> rays, const Trian
   finish_list<Layout>(list, tree, rays.data(), found, hits);
 }
 
-/// Works out one hit, whose ray is still at hand.
+/// Works out one hit, whose ray is still at hand. Differences are those of shape/triangle.h, also in the sign
+/// of a weight of 0.
 template <class Layout>
 HWY_INLINE void finish_one(const TriangleTree& tree, const KernelRay& ray, const TriangleHit& found,
                            Hit& hit) {
   const TriangleBlock& block = Layout::block(tree.pool() + std::size_t(found.block) * TriangleTree::kUnit);
   const char* lane = reinterpret_cast<const char*>(&block) + 4 * found.lane;
   const auto from_origin = [&](int vertex, int k) {
-    return ray.origin[k] - *reinterpret_cast<const float*>(lane + 48 * vertex + ray.axis_row[k]);
+    return *reinterpret_cast<const float*>(lane + 48 * vertex + ray.axis_row[k]) - ray.origin[k];
   };
   const float sx = ray.shear[0], sy = ray.shear[1];
   const float az = from_origin(0, 2), bz = from_origin(1, 2), cz = from_origin(2, 2);

@@ -109,8 +109,8 @@ struct Kernels {
 
   /// The first crossing of a triangle below a placement that comes before `hit`, equal t by (instance, key):
   /// t counts as far as hit.t, and equal to that for instances below hit.instance. Fills `full`, but for the
-  /// ids, when there is one. `bounds` are the world's. Precondition, here and below: trees.is_ordinary(), and they
-  /// have triangles. False also for a ray that is not ordinary in the space of an object.
+  /// ids, when there is one. `bounds` are the world's. Precondition, here and below: trees.is_ordinary(), and
+  /// they have triangles. False also for a ray that is not ordinary in the space of an object.
   bool (*closest_hit_below)(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, PlacedHit& hit,
                             Hit& full);
   bool (*any_hit_below)(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, bool& is_hit);

@@ -21,8 +21,8 @@ namespace boxwood::simd::HWY_NAMESPACE {
 
 /// As kFewNodes; fewer, because there are three other lists to wait on.
 inline constexpr int kPlacedFewNodes = 10;
-/// Room for both levels; deeper trees take one ray at a time. With this much a ray takes an odd number of lines
-/// of the cache, so that what is in use of many rays does not meet in few sets of it.
+/// Room for both levels; deeper trees take one ray at a time. With this much a ray takes an odd number of
+/// lines of the cache, so that what is in use of many rays does not meet in few sets of it.
 inline constexpr int kPlacedStack = 200;
 
 /// A ray and where it stands: *top is what it visits next, and top[kPlacedStack] its key.
