@@ -1,8 +1,9 @@
 // batch.cpp: how are many rays answered?
 //
-// In chunks, one for each task: the kernel takes a chunk's rays in turns and says what each does to the
-// world's triangles, plain C++ answers the few rays that it does not take, and then every answer is worked
-// out. A chunk is long enough that the kernel is rarely short of rays, and its findings stay in the cache.
+// In chunks, one for each task: kernels take a chunk's rays in turns and say what each does to the world's
+// triangles, and then to those below placements, within the limit that the world left. Answers are worked
+// out, plain C++ adds other shapes, and answers the few rays that kernels do not take. A chunk is long enough
+// that a kernel is rarely short of rays, and its findings stay in the cache.
 #include "boxwood/scene/batch.h"
 
 #include <numeric>

@@ -1,8 +1,8 @@
 // scene.cpp: how is a ray answered?
 //
-// A kernel (simd/kernels.h) finds what the ray does to the world's triangles; rays that it does not take are
-// walked by plain C++ (walk.h), with the same answer. Other shapes and placements follow, within the limit
-// that the triangles left. Batches are in batch.cpp.
+// Kernels (simd/kernels.h) find what the ray does to triangles, in the world and below placements; rays that
+// they do not take are walked by plain C++ (walk.h), with the same answer. Other shapes follow, within the
+// limit that the triangles left. Batches are in batch.cpp.
 #include "boxwood/scene/scene.h"
 
 #include <algorithm>
