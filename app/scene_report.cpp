@@ -98,8 +98,9 @@ TreeReport report_triangles(std::string name, const simd::TriangleTree& tree) {
 void report_part(const std::string& name, const Part& part, const SceneDesc& desc,
                  std::vector<TreeReport>& out) {
   if (!part.triangles.is_empty())
-    out.push_back(part.triangles.width() == 4 ? report_triangles<4>(name + ": triangles", part.triangles)
-                                              : report_triangles<8>(name + ": triangles", part.triangles));
+    out.push_back(with_width(part.triangles.width(), [&](auto w) {
+      return report_triangles<w()>(name + ": triangles", part.triangles);
+    }));
 
   // The leaves hold the shapes in tree order, so these boxes are those that the tree was built over.
   std::vector<Box3> boxes;

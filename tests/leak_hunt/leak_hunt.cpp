@@ -94,11 +94,10 @@ Count hunt(const simd::Kernels& kernels, simd::Layout layout, const test::Body& 
   const std::vector<Triangle> triangles = test::triangles(mesh);
   const Bvh bvh = build(boxes(triangles));
   const Box3 bounds = bvh.bounds();
-  const simd::TriangleTree tree = kernels.width == 4
-                                      ? simd::TriangleTree(collapse<4>(bvh, default_executor()), triangles,
-                                                           {}, default_executor(), layout)
-                                      : simd::TriangleTree(collapse<8>(bvh, default_executor()), triangles,
-                                                           {}, default_executor(), layout);
+  const simd::TriangleTree tree = with_width(kernels.width, [&](auto w) {
+    return simd::TriangleTree(collapse<w()>(bvh, default_executor()), triangles, {}, default_executor(),
+                              layout);
+  });
 #ifdef BOXWOOD_HAS_EMBREE
   const Peer fast(mesh, false), robust(mesh, true);
 #endif

@@ -15,8 +15,7 @@ namespace {
 
 BoxTree pack(int width, const std::vector<Box3>& boxes) {
   const Bvh bvh = build(boxes);
-  return width == 4 ? BoxTree(collapse<4>(bvh, serial_executor()), boxes)
-                    : BoxTree(collapse<8>(bvh, serial_executor()), boxes);
+  return with_width(width, [&](auto w) { return BoxTree(collapse<w()>(bvh, serial_executor()), boxes); });
 }
 
 /// What a visit does: notes the item, and lowers the limit as told.

@@ -202,10 +202,9 @@ TEST(KernelClosestPoint, OnPartsOfTriangles) {
   const WideCost small_leaves{.node = 0.001f, .block = 100};
   for (const Kernels* kernels : available_kernels())
     for (const Layout layout : test::kLayouts) {
-      if (kernels->width == 4)
-        check(*kernels, collapse<4>(bvh, serial_executor(), small_leaves), layout);
-      else
-        check(*kernels, collapse<8>(bvh, serial_executor(), small_leaves), layout);
+      with_width(kernels->width, [&](auto w) {
+        check(*kernels, collapse<w()>(bvh, serial_executor(), small_leaves), layout);
+      });
       if (HasFatalFailure()) return;
     }
 }

@@ -32,7 +32,7 @@ struct DeepTree {
       const std::uint32_t pair = split(current, size);
       current = path_is_first ? pair : pair + 1;
       fill(path_is_first ? pair + 1 : pair, size,
-           std::min(width - 1, 1 << std::min(3, kMaxDepth - 1 - depth)));
+           std::min(width - 1, 1 << std::min(4, kMaxDepth - 1 - depth)));
       size *= 0.99f;
     }
     make_leaf(current, size, kCrowd);
@@ -86,9 +86,9 @@ void expect_room(bool path_is_first) {
   const WideBvh<W> wide = collapse<W>(deep.bvh, serial_executor());
   ASSERT_EQ(validate(wide, boxes(deep.triangles)), "");
   const TriangleTree tree(wide, deep.triangles, {}, serial_executor());
-  // The last three levels of the path become one of eight children, or the last two one of four; and the
-  // crowd takes five of eight, or eight of four.
-  EXPECT_EQ(tree.max_stack(), (kMaxDepth + (W == 8 ? 2 : 6)) * (W - 1) + W);
+  // The last levels of the path become one: four of sixteen children, three of eight, two of four; and the
+  // crowd takes four of sixteen, five of eight, eight of four.
+  EXPECT_EQ(tree.max_stack(), (kMaxDepth + (W == 16 ? 0 : W == 8 ? 2 : 6)) * (W - 1) + W);
 
   // Plain C++ comes past every block.
   const std::vector<Ray> rays = rays_along_x();
@@ -122,6 +122,7 @@ TEST(KernelDepth, ACrowdInTheDeepestLeaf) {
   for (const bool path_is_first : {true, false}) {
     expect_room<4>(path_is_first);
     expect_room<8>(path_is_first);
+    expect_room<16>(path_is_first);
   }
 }
 
@@ -204,11 +205,13 @@ void expect_room_for_two_at_a_time() {
 TEST(KernelDepth, RoomForTwoAtATime) {
   expect_room_for_two_at_a_time<4>();
   expect_room_for_two_at_a_time<8>();
+  expect_room_for_two_at_a_time<16>();
 }
 
 TEST(KernelDepth, DeeperTreesAreRefused) {
   expect_refused_when_deeper<4>();
   expect_refused_when_deeper<8>();
+  expect_refused_when_deeper<16>();
 }
 
 }  // namespace

@@ -41,9 +41,10 @@ std::vector<PackedTree> every_packed_tree(int width, std::span<const Triangle> t
   std::vector<PackedTree> packed;
   const auto add = [&](const std::string& name, const Bvh& bvh, WideCost cost) {
     for (const Layout layout : kLayouts) {
-      packed.push_back({name + (layout == Layout::full ? "" : ", compact"),
-                        width == 4 ? pack_as<4>(bvh, triangles, keys, layout, cost)
-                                   : pack_as<8>(bvh, triangles, keys, layout, cost)});
+      packed.push_back(
+          {name + (layout == Layout::full ? "" : ", compact"), with_width(width, [&, &bvh = bvh](auto w) {
+             return pack_as<w()>(bvh, triangles, keys, layout, cost);
+           })});
       EXPECT_EQ(validate(*packed.back().tree), "") << packed.back().name;
     }
   };
@@ -95,7 +96,7 @@ bool same_bits(float a, float b) {
 
 std::unique_ptr<TriangleTree> pack(int width, const Bvh& bvh, std::span<const Triangle> triangles,
                                    std::span<const std::uint32_t> keys, Layout layout) {
-  return width == 4 ? pack_as<4>(bvh, triangles, keys, layout) : pack_as<8>(bvh, triangles, keys, layout);
+  return with_width(width, [&](auto w) { return pack_as<w()>(bvh, triangles, keys, layout); });
 }
 
 std::vector<Answer> brute_answers(std::span<const Triangle> triangles, std::span<const std::uint32_t> keys,
@@ -213,7 +214,7 @@ Checked expect_kernels_equal_to_brute_force(const std::string& name, const std::
   for (const Triangle& triangle : triangles) bounds.extend(triangle.box());
   Checked checked;
   bool is_first = true;
-  for (const int width : {4, 8}) {
+  for (const int width : {4, 8, 16}) {
     const std::vector<PackedTree> trees = every_packed_tree(width, triangles, keys);
     for (const Kernels* kernels : available_kernels()) {
       if (kernels->width != width) continue;

@@ -102,7 +102,7 @@ TEST(KernelOracle, ThisMachineHasKernels) {
   ASSERT_FALSE(available_kernels().empty());
 #endif
   for (const Kernels* kernels : available_kernels()) {
-    EXPECT_TRUE(kernels->width == 4 || kernels->width == 8) << kernels->name;
+    EXPECT_TRUE(kernels->width == 4 || kernels->width == 8 || kernels->width == 16) << kernels->name;
     EXPECT_NE(kernels->name, "other");
     RecordProperty(std::string(kernels->name), kernels->width);
   }

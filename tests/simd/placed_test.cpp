@@ -46,8 +46,7 @@ PlacedTrees place(int width, const TriangleTree& tree, const Affine3& object_fro
                   const Box3& world_box, const Box3& bounds) {
   const Box3 boxes[] = {world_box};
   const Bvh bvh = build(boxes);
-  return {width == 4 ? BoxTree(collapse<4>(bvh, serial_executor()), boxes)
-                     : BoxTree(collapse<8>(bvh, serial_executor()), boxes),
+  return {with_width(width, [&](auto w) { return BoxTree(collapse<w()>(bvh, serial_executor()), boxes); }),
           {{object_from_world, world_box, bounds, &tree, tree.pool(), tree.box_slack(), 5, 0}}};
 }
 
@@ -81,8 +80,7 @@ std::size_t count_wrong_below(const Kernels& kernels, const PlacedTrees& trees, 
   intersect_triangle(
       RayShear(placed.object_from_world.point(ray.origin), placed.object_from_world.vector(ray.direction)),
       triangle.a, triangle.b, triangle.c, crossing);
-  wrong += !test::same_bits(full.t, t) || !test::same_bits(full.u, crossing.u) ||
-           !test::same_bits(full.v, crossing.v) ||
+  wrong += !test::same_bits(full.t, t) || full.u != crossing.u || full.v != crossing.v ||
            full.normal != normalize(transform_normal(placed.object_from_world, triangle.normal()));
   // What is as near already stays when its instance comes first, and not when it comes later.
   for (const std::uint32_t instance : {4u, 6u}) {

@@ -121,6 +121,7 @@ void expect_nothing_lost(const SplitTriangles& split, std::vector<Ray> rays) {
   const std::vector<test::Answer> answers = test::brute_answers(split.triangles, {}, rays);
   expect_nothing_lost<4>(split, rays, answers);
   expect_nothing_lost<8>(split, rays, answers);
+  expect_nothing_lost<16>(split, rays, answers);
 }
 
 TEST(KernelSplitTrees, LargeTrianglesSeenEdgeOn) {

@@ -47,7 +47,8 @@ struct Packed {
 
 template <class Width>
 class ValidatePacked : public ::testing::Test {};
-using Widths = ::testing::Types<std::integral_constant<int, 4>, std::integral_constant<int, 8>>;
+using Widths = ::testing::Types<std::integral_constant<int, 4>, std::integral_constant<int, 8>,
+                                std::integral_constant<int, 16>>;
 TYPED_TEST_SUITE(ValidatePacked, Widths);
 
 TYPED_TEST(ValidatePacked, UnpackingGivesBackWhatWasPacked) {

@@ -73,6 +73,8 @@ TEST(MetricsWide, ACollapsedTreeCostsNoMoreThanEachBinaryNodeMadeWide) {
     each += (node.is_leaf() ? 0.5 : 1.0) * half_area(node.box) / half_area(bvh.nodes[0].box);
   const WideBvh<8> eight = collapse<8>(bvh, serial_executor(), {1, 0.5f});
   const WideBvh<4> four = collapse<4>(bvh, serial_executor(), {1, 0.5f});
+  const WideBvh<16> sixteen = collapse<16>(bvh, serial_executor(), {1, 0.5f});
+  EXPECT_LE(sah_cost(sixteen, {1, 0.5f}), sah_cost(eight, {1, 0.5f}) * (1 + 1e-5));
   EXPECT_LE(sah_cost(eight, {1, 0.5f}), sah_cost(four, {1, 0.5f}) * (1 + 1e-5));
   EXPECT_LE(sah_cost(four, {1, 0.5f}), each * (1 + 1e-5));
   EXPECT_EQ(tree_shape(eight).primitive_count, boxes.size());

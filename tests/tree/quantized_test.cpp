@@ -66,10 +66,12 @@ TEST(Quantized, HoldsItsChildrenAtAnyScale) {
     for (const float offset : {0.0f, 3.0f}) {
       expect_held<4>(exponent, offset);
       expect_held<8>(exponent, offset);
+      expect_held<16>(exponent, offset);
     }
   for (const float offset : {1e3f, 1e6f, 1e8f}) {
     expect_held<4>(0, offset);
     expect_held<8>(0, offset);
+    expect_held<16>(0, offset);
   }
 }
 

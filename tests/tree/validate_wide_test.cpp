@@ -38,7 +38,8 @@ struct Sample {
 
 template <class Width>
 class ValidateWide : public ::testing::Test {};
-using Widths = ::testing::Types<std::integral_constant<int, 4>, std::integral_constant<int, 8>>;
+using Widths = ::testing::Types<std::integral_constant<int, 4>, std::integral_constant<int, 8>,
+                                std::integral_constant<int, 16>>;
 TYPED_TEST_SUITE(ValidateWide, Widths);
 
 TYPED_TEST(ValidateWide, AcceptsATreeAndNoTree) {

@@ -1,4 +1,4 @@
-// traverse_wide.h: how does any question walk a tree of four or eight children a node?
+// traverse_wide.h: how does any question walk a tree of many children a node?
 //
 // The loop of traverse.h, one rank wider: all children of a node are asked for their bounds at once, those
 // that may matter are put on the stack with the nearest on top, and the walk goes on from there. A query

@@ -149,8 +149,8 @@ Bvh build_in_leaf_order(std::vector<Item>& items, const BoxOf& box_of, const Bui
 
 void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options, int width,
                  Executor& executor) {
-  part.triangles = width == 4 ? build_triangles<4>(part, desc, options, executor)
-                              : build_triangles<8>(part, desc, options, executor);
+  part.triangles =
+      with_width(width, [&](auto w) { return build_triangles<w()>(part, desc, options, executor); });
   part.shape_bvh = build_in_leaf_order(
       part.shapes,
       [&](const LeafShape& s) {
@@ -246,7 +246,7 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   top_level.leaf_size = 1;  // a tree below each, which costs much more than a box
   parts->top_level = build_in_leaf_order(
       parts->placements, [](const Placement& p) { return p.world_box; }, top_level, executor);
-  parts->placed_trees = width == 4 ? place_trees<4>(*parts, executor) : place_trees<8>(*parts, executor);
+  parts->placed_trees = with_width(width, [&](auto w) { return place_trees<w()>(*parts, executor); });
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
   // Choose who answers.

@@ -59,10 +59,7 @@ void traverse_triangles_as(const simd::TriangleTree& tree, Q& query, Statistics&
 template <WideQuery Q, class Statistics>
 void traverse_triangles(const simd::TriangleTree& tree, Q& query, Statistics& statistics) {
   if (tree.is_empty()) return;
-  if (tree.width() == 4)
-    traverse_triangles_as<4>(tree, query, statistics);
-  else
-    traverse_triangles_as<8>(tree, query, statistics);
+  with_width(tree.width(), [&](auto w) { traverse_triangles_as<w()>(tree, query, statistics); });
 }
 
 /// Names the crossings of one triangle, once there are any.

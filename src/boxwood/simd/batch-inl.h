@@ -88,7 +88,8 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
       if constexpr (kAny) {
         if (any_hit_one<Layout>(pool, ray, Direct{}, hit.t)) hit.block = 0;
       } else {
-        closest_hit_one<Layout>(pool, ray, Direct{}, hit);
+        EdgesOfHit edges;
+        closest_hit_one<Layout>(pool, ray, Direct{}, hit, edges);
       }
       output(i, hit);
     }

@@ -23,8 +23,12 @@ struct Crossed {
   std::uint32_t maybe, surely;
 };
 
-/// The signs of the edge functions.
-HWY_INLINE Crossed test_edges(const TriangleBlock& block, const KernelRay& ray) {
+/// The edge functions opposite to the vertices a, b, c, and what their signs say.
+struct Edges {
+  V4 wa, wb, wc;
+  Crossed crossed;
+};
+HWY_INLINE Edges test_edges(const TriangleBlock& block, const KernelRay& ray) {
   const D4 d;
   const char* rows = reinterpret_cast<const char*>(&block);
   const char *x = rows + ray.axis_row[0], *y = rows + ray.axis_row[1], *z = rows + ray.axis_row[2];
@@ -50,7 +54,7 @@ HWY_INLINE Crossed test_edges(const TriangleBlock& block, const KernelRay& ray) 
   const V4 wc = hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx));
   const V4 product = hn::Mul(hn::Min(wa, hn::Min(wb, wc)), hn::Max(wa, hn::Max(wb, wc)));
   const auto missed = hn::Lt(product, hn::Zero(d));
-  return {mask_bits(d, missed) ^ 15u, mask_bits(d, hn::Gt(product, hn::Zero(d)))};
+  return {wa, wb, wc, {mask_bits(d, missed) ^ 15u, mask_bits(d, hn::Gt(product, hn::Zero(d)))}};
 }
 
 /// Asks the scalar test about each lane of `lanes`; returns those that are crossed, before any gate.

@@ -106,5 +106,6 @@ BoxTree::BoxTree(const WideBvh<W>& wide, std::span<const Box3> boxes) : width_(W
 
 template BoxTree::BoxTree(const WideBvh<4>&, std::span<const Box3>);
 template BoxTree::BoxTree(const WideBvh<8>&, std::span<const Box3>);
+template BoxTree::BoxTree(const WideBvh<16>&, std::span<const Box3>);
 
 }  // namespace boxwood::simd

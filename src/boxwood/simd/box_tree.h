@@ -48,5 +48,6 @@ class BoxTree {
 
 extern template BoxTree::BoxTree(const WideBvh<4>&, std::span<const Box3>);
 extern template BoxTree::BoxTree(const WideBvh<8>&, std::span<const Box3>);
+extern template BoxTree::BoxTree(const WideBvh<16>&, std::span<const Box3>);
 
 }  // namespace boxwood::simd

@@ -46,7 +46,7 @@ HWY_NOINLINE void visit_boxes_one(const char* pool, std::uint32_t current, const
     } else {
       limit = visitor.visit(BoxTree::item_of(current));
     }
-    const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit) | 7;
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit) | kChildBits;
     while (keys[top] > limit_key) --top;
     current = static_cast<std::uint32_t>(refs[top]);
     if (top > 0) --top;

@@ -129,9 +129,9 @@ class Bundle {
   HWY_INLINE bool step(const char* pool) {
     if (top_ == 0) return false;
     --top_;
-    if (keys_[top_] > (std::bit_cast<std::int32_t>(last_t_) | 7)) return true;
+    if (keys_[top_] > (std::bit_cast<std::int32_t>(last_t_) | kChildBits)) return true;
     const auto parent = static_cast<std::uint32_t>(refs_[top_]) & ~15u;
-    const std::uint32_t child = static_cast<std::uint32_t>(refs_[top_]) & 7;
+    const std::uint32_t child = static_cast<std::uint32_t>(refs_[top_] & kChildBits);
     const char* node = node_at(pool, parent);
     const MB active = test_box(node, child);
     if (hn::AllFalse(DB(), active)) return true;
@@ -220,13 +220,14 @@ class Bundle {
     const VIW sorted =
         sort_all_descending(di, compress(di, hn::IfThenElseZero(enters, make_keys(entry)), enters));
     hn::StoreU(sorted, di, keys);
-    hn::StoreU(hn::Or(hn::And(sorted, hn::Set(di, 7)), hn::Set(di, static_cast<std::int32_t>(ref))), di,
-               refs);
+    hn::StoreU(hn::Or(hn::And(sorted, hn::Set(di, kChildBits)), hn::Set(di, static_cast<std::int32_t>(ref))),
+               di, refs);
 
     // The other bundle's turn comes first: time to fetch what is next.
     const std::int32_t* children = children_of<Layout>(node_at(pool, ref));
     for (std::size_t i = count > kFetchedAhead ? count - kFetchedAhead : 0; i < count; ++i)
-      prefetch_lines<Layout::kNodeLines>(node_at(pool, static_cast<std::uint32_t>(children[refs[i] & 7])));
+      prefetch_lines<Layout::kNodeLines>(
+          node_at(pool, static_cast<std::uint32_t>(children[refs[i] & kChildBits])));
     return count;
   }
 

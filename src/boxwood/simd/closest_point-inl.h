@@ -256,7 +256,7 @@ HWY_NOINLINE void closest_point_one(const TriangleTree& tree, Vec3 point, Triang
         changed |= take_nearest(Layout::block(block), units(pool, block), point, best);
       if (changed) limit2 = squared_reach(best.distance, part_slack);
     }
-    const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit2) | 7;
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(limit2) | kChildBits;
     while (keys[top] > limit_key) --top;
     current = static_cast<std::uint32_t>(refs[top]);
     --top;

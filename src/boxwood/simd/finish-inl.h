@@ -16,7 +16,7 @@
 #include <cmath>
 #include <limits>
 
-#include "boxwood/simd/layout-inl.h"
+#include "boxwood/simd/single-inl.h"
 #include "boxwood/simd/triangle_tree.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -226,29 +226,65 @@ void finish_all(const TriangleTree& tree, std::span<const Ray> rays, const Trian
   finish_list<Layout>(list, tree, rays.data(), found, hits);
 }
 
-/// Works out one hit, whose ray is still at hand. Differences are those of shape/triangle.h, also in the sign
-/// of a weight of 0.
+/// The first three lanes, each from a vector of its own.
+HWY_INLINE V4 first_of_each(V4 a, V4 b, V4 c) {
+  return hn::ConcatUpperLower(D4(), c, hn::OddEven(b, a));
+}
+/// The lanes y, z, x of (x, y, z, anything).
+HWY_INLINE V4 turned(V4 v) {
+  return hn::TableLookupLanes(v, hn::SetTableIndices(D4(), kAxes[0]));
+}
+
+/// The normal of the triangle in the lane of a block that `lane` points to.
+#if HWY_HAVE_FLOAT64 && HWY_MAX_BYTES >= 32
+HWY_INLINE Vec3 normal_of(const TriangleBlock&, const char* lane, std::uint32_t) {
+  const D4 d;
+  const hn::FixedTag<double, 4> dd;
+  const auto vertex = [&](int i, auto& xyz, auto& yzx) {
+    V4 v[3];
+    for (int k = 0; k < 3; ++k) v[k] = hn::Set(d, *reinterpret_cast<const float*>(lane + 48 * i + 16 * k));
+    xyz = hn::PromoteTo(dd, first_of_each(v[0], v[1], v[2]));
+    yzx = hn::PromoteTo(dd, first_of_each(v[1], v[2], v[0]));
+  };
+  hn::Vec<decltype(dd)> a, b, c, turned_a, turned_b, turned_c;
+  vertex(0, a, turned_a);
+  vertex(1, b, turned_b);
+  vertex(2, c, turned_c);
+
+  // The cross product's z, x and y.
+  const auto n = hn::Sub(hn::Mul(hn::Sub(b, a), hn::Sub(turned_c, turned_a)),
+                         hn::Mul(hn::Sub(turned_b, turned_a), hn::Sub(c, a)));
+  const hn::Half<decltype(dd)> half;
+  const auto squares = hn::Mul(n, n);
+  const auto zx = hn::LowerHalf(half, squares), y = hn::UpperHalf(half, squares);
+  const double size = std::sqrt(hn::GetLane(hn::Add(hn::Add(hn::Shuffle01(zx), y), zx)));
+  const double scale = size > 0 ? 1 / size : 0;
+  HWY_ALIGN float xyz[4];
+  hn::Store(turned(hn::DemoteTo(d, hn::Mul(n, hn::Set(dd, scale)))), d, xyz);
+  return {xyz[0], xyz[1], xyz[2]};
+}
+#else
+HWY_INLINE Vec3 normal_of(const TriangleBlock& block, const char*, std::uint32_t lane) {
+  return block.triangle(lane).normal();
+}
+#endif
+
+/// Works out one hit, whose ray and edge functions are still at hand.
 template <class Layout>
 HWY_INLINE void finish_one(const TriangleTree& tree, const KernelRay& ray, const TriangleHit& found,
-                           Hit& hit) {
+                           const EdgesOfHit& edges, Hit& hit) {
   const TriangleBlock& block = Layout::block(tree.pool() + std::size_t(found.block) * TriangleTree::kUnit);
   const char* lane = reinterpret_cast<const char*>(&block) + 4 * found.lane;
-  const auto from_origin = [&](int vertex, int k) {
-    return *reinterpret_cast<const float*>(lane + 48 * vertex + ray.axis_row[k]) - ray.origin[k];
-  };
-  const float sx = ray.shear[0], sy = ray.shear[1];
-  const float az = from_origin(0, 2), bz = from_origin(1, 2), cz = from_origin(2, 2);
-  const float ax = from_origin(0, 0) - sx * az, ay = from_origin(0, 1) - sy * az;
-  const float bx = from_origin(1, 0) - sx * bz, by = from_origin(1, 1) - sy * bz;
-  const float cx = from_origin(2, 0) - sx * cz, cy = from_origin(2, 1) - sy * cz;
-  const float wa = bx * cy - by * cx, wb = cx * ay - cy * ax, wc = ax * by - ay * bx;
+
+  const float wa = edges.wa[found.lane], wb = edges.wb[found.lane], wc = edges.wc[found.lane];
   const float sum = wa + wb + wc, inverse_sum = 1.0f / sum;
-  const Triangle triangle = block.triangle(found.lane);
   hit.t = found.t;
   hit.u = wb * inverse_sum;
   hit.v = wc * inverse_sum;
-  hit.normal = triangle.normal();
-  if (HWY_LIKELY(std::fabs(sum) > 0x1p-80f && std::fabs(sum) < 0x1p120f)) return;
+  hit.normal = normal_of(block, lane, found.lane);
+  const float size = std::fabs(sum);
+  if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) return;
+  const Triangle triangle = block.triangle(found.lane);
   Crossing crossing;
   intersect_triangle(ray.shear_constants(), triangle.a, triangle.b, triangle.c, crossing);
   hit.u = crossing.u;

@@ -26,8 +26,8 @@ inline constexpr int kInFlight = 32;
 /// When no more rays than this stand before a node, the others are seen to.
 inline constexpr int kFewNodes = 16;
 
-/// Enough for 17 levels of eight children; deeper trees take one ray at a time.
-inline constexpr int kShortStack = 128;
+/// Enough for 16 levels of sixteen children, or 17 of eight; deeper trees take one ray at a time.
+inline constexpr int kShortStack = kWidth > 8 ? 264 : 128;
 
 /// A ray and where it stands: *top is what it visits next, and top[kShortStack] its key.
 struct alignas(64) RayInFlight {
@@ -159,7 +159,7 @@ class Interleaved {
       for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
         open->ray = ray;
         open->block = block;
-        open->crossed = test_edges(Layout::block(block), ray->ray);
+        open->crossed = test_edges(Layout::block(block), ray->ray).crossed;
         open += open->crossed.maybe != 0;
       }
     }
@@ -185,7 +185,7 @@ class Interleaved {
   /// Keeps of the stack what may still matter, below the leaf on top.
   HWY_INLINE void cull(RayInFlight& ray) {
     const DIW di;
-    const VIW limit = hn::Set(di, std::bit_cast<std::int32_t>(ray.hit.t) | 7);
+    const VIW limit = hn::Set(di, std::bit_cast<std::int32_t>(ray.hit.t) | kChildBits);
     std::int32_t *to = ray.refs + 1, *top = ray.top;
     for (std::int32_t* from = to; from < top; from += kWidth) {
       const VIW keys = hn::LoadU(di, from + kShortStack), refs = hn::LoadU(di, from);

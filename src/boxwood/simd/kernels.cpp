@@ -24,7 +24,8 @@ struct KernelsFor {
     KernelRay kernel_ray;
     if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
     hit = {ray.t_max + 0.0f};
-    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit);
+    EdgesOfHit edges;
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit, edges);
     if (!hit.is_hit()) hit.t = kInfinity;
     return true;
   }
@@ -34,9 +35,10 @@ struct KernelsFor {
     KernelRay kernel_ray;
     if (!prepare(ray, bounds, tree.box_slack(), kernel_ray)) return false;
     hit = {ray.t_max + 0.0f};
-    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit);
+    EdgesOfHit edges;
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Direct{}, hit, edges);
     if (hit.is_hit())
-      finish_one<Layout>(tree, kernel_ray, hit, full);
+      finish_one<Layout>(tree, kernel_ray, hit, edges, full);
     else
       hit.t = kInfinity;
     return true;
@@ -62,7 +64,8 @@ struct KernelsFor {
     KernelRay kernel_ray;
     if (!prepare<true>(ray, bounds, tree.box_slack(), kernel_ray)) return false;
     hit = {t_max + 0.0f};
-    closest_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, hit);
+    EdgesOfHit edges;
+    closest_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, hit, edges);
     if (!hit.is_hit()) hit.t = kInfinity;
     return true;
   }
@@ -106,7 +109,7 @@ struct KernelsFor {
     visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
     if (walk.is_unusual) return false;
     hit = walk.hit;
-    if (hit.is_placed()) finish_one_placed<Layout>(trees, walk.local[walk.winner], hit, full);
+    if (hit.is_placed()) finish_one_placed<Layout>(trees, walk, full);
     return true;
   }
 

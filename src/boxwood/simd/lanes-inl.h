@@ -17,14 +17,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
 
-/// The lanes of a mask of up to eight, as bits.
+/// The lanes of a mask of up to sixteen, as bits.
 template <class D, class M>
 HWY_INLINE std::uint32_t mask_bits(D d, M mask) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, mask, bits);
-  return bits[0];
+  if constexpr (hn::MaxLanes(D()) > 8) {
+    std::uint16_t bits = 0;
+    hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(&bits));
+    return bits;
+  } else {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return bits[0];
+  }
 }
 
+#if HWY_TARGET > HWY_AVX3
 /// For each mask of kWidth lanes: where the lanes stand afterwards, those of the mask first. In units of
 /// kUnit bytes, as the instruction wants them.
 struct CompressTable {
@@ -44,11 +51,15 @@ struct CompressTable {
   }
 };
 inline constexpr CompressTable kCompressTable;
+#endif
 
 /// Moves the lanes of `mask` to the front, in their order; the others follow, or are 0.
 template <class D, class M>
 HWY_INLINE hn::Vec<D> compress(D d, hn::Vec<D> v, M mask) {
-  if constexpr (HWY_TARGET <= HWY_AVX3) return hn::Compress(v, mask);
+#if HWY_TARGET <= HWY_AVX3
+  (void)d;
+  return hn::Compress(v, mask);
+#else
   const std::uint8_t* from = kCompressTable.from[mask_bits(d, mask)];
   if constexpr (kWidth == 8) {
     const auto lanes = hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::uint8_t, D>(), from));
@@ -57,6 +68,7 @@ HWY_INLINE hn::Vec<D> compress(D d, hn::Vec<D> v, M mask) {
     const hn::Repartition<std::uint8_t, D> bytes;
     return hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(bytes, v), hn::Load(bytes, from)));
   }
+#endif
 }
 
 }  // namespace boxwood::simd::HWY_NAMESPACE

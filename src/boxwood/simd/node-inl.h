@@ -62,11 +62,12 @@ struct BoxRay {
   }
 };
 
-/// A key orders children by entry and says which child it is: the entry's lowest three bits make way for the
+/// A key orders children by entry and says which child it is: the entry's lowest bits make way for the
 /// number. This makes a distance smaller at most, which culls less.
+inline constexpr std::int32_t kChildBits = kWidth > 8 ? 15 : 7;
 HWY_INLINE VIW make_keys(VIW entry) {
   const DIW di;
-  return hn::Or(hn::AndNot(hn::Set(di, 7), entry), hn::Iota(di, 0));
+  return hn::Or(hn::AndNot(hn::Set(di, kChildBits), entry), hn::Iota(di, 0));
 }
 
 /// Sorts four keys, the largest first.
@@ -100,13 +101,37 @@ HWY_INLINE hn::Vec<D> sort_eight_descending(D d, hn::Vec<D> keys) {
   return by_one(keys, hn::Shuffle2301(keys));
 }
 
+/// Sorts sixteen keys, the largest first: two eights, merged the same way.
+template <class D>
+HWY_INLINE hn::Vec<D> sort_sixteen_descending(D d, hn::Vec<D> keys) {
+  const hn::Half<D> half;
+  const auto lower = sort_eight_descending(half, hn::LowerHalf(half, keys));
+  const auto upper = hn::Reverse(half, sort_eight_descending(half, hn::UpperHalf(half, keys)));
+  // Each half is first high then low, or the other way round; what remains is sorted by distances 4, 2, 1.
+  const auto merge = [&](auto v) {
+    const auto swapped = hn::ConcatLowerUpper(half, v, v);
+    v = hn::ConcatUpperLower(half, hn::Min(v, swapped), hn::Max(v, swapped));
+    const hn::Repartition<std::int64_t, hn::Half<D>> half64;
+    const auto by_two = [&](auto a, auto b) {
+      return hn::BitCast(half,
+                         hn::OddEven(hn::BitCast(half64, hn::Min(a, b)), hn::BitCast(half64, hn::Max(a, b))));
+    };
+    v = by_two(v, hn::Shuffle1032(v));
+    const auto other = hn::Shuffle2301(v);
+    return hn::OddEven(hn::Min(v, other), hn::Max(v, other));
+  };
+  return hn::Combine(d, merge(hn::Min(lower, upper)), merge(hn::Max(lower, upper)));
+}
+
 /// Sorts the keys of all children, the largest first.
 template <class D>
 HWY_INLINE hn::Vec<D> sort_all_descending(D d, hn::Vec<D> keys) {
   if constexpr (kWidth == 4)
     return sort_descending(keys);
-  else
+  else if constexpr (kWidth == 8)
     return sort_eight_descending(d, keys);
+  else
+    return sort_sixteen_descending(d, keys);
 }
 
 }  // namespace boxwood::simd::HWY_NAMESPACE

@@ -81,7 +81,8 @@ struct PlacedWalk {
   const KernelRay& world;
   PlacedHit hit;  // hit.t is the limit
   KernelRay local[2];
-  int winner = 0;  // which of both belongs to the hit
+  EdgesOfHit edges[2];
+  int winner = 0;  // which of both belong to the hit
   bool is_unusual = false;
 
   HWY_INLINE float visit(std::uint32_t item) {
@@ -91,7 +92,7 @@ struct PlacedWalk {
     const Entry entry = enter(placed, ray, world, hit.t, below, way);
     if (entry == Entry::enters) {
       TriangleHit found{hit.t, tie_key(placed, hit.instance)};
-      closest_hit_one<Layout>(placed.pool, below, way, found);
+      closest_hit_one<Layout>(placed.pool, below, way, found, edges[winner ^ 1]);
       if (found.is_hit()) {
         hit = {found, item, placed.instance};
         winner ^= 1;

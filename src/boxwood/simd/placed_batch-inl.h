@@ -23,7 +23,7 @@ namespace boxwood::simd::HWY_NAMESPACE {
 inline constexpr int kPlacedFewNodes = 10;
 /// Room for both levels; deeper trees take one ray at a time. With this much a ray takes an odd number of
 /// lines of the cache, so that what is in use of many rays does not meet in few sets of it.
-inline constexpr int kPlacedStack = 200;
+inline constexpr int kPlacedStack = kWidth > 8 ? 392 : 200;
 
 /// A ray and where it stands: *top is what it visits next, and top[kPlacedStack] its key.
 struct alignas(64) PlacedRay {
@@ -196,7 +196,7 @@ class PlacedInterleaved {
       for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
         open->ray = ray;
         open->block = block;
-        open->crossed = test_edges(Layout::block(block), ray->local);
+        open->crossed = test_edges(Layout::block(block), ray->local).crossed;
         open += open->crossed.maybe != 0;
       }
     }
@@ -223,7 +223,7 @@ class PlacedInterleaved {
   /// Keeps of a part of the stack what may still matter up to `limit`; returns its end.
   HWY_INLINE std::int32_t* cull(std::int32_t* to, const std::int32_t* end, float limit) {
     const DIW di;
-    const VIW last = hn::Set(di, std::bit_cast<std::int32_t>(limit) | 7);
+    const VIW last = hn::Set(di, std::bit_cast<std::int32_t>(limit) | kChildBits);
     for (const std::int32_t* from = to; from < end; from += kWidth) {
       const VIW keys = hn::LoadU(di, from + kPlacedStack), refs = hn::LoadU(di, from);
       const auto keep =

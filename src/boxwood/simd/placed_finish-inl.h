@@ -131,12 +131,12 @@ void finish_all_placed(const PlacedTrees& trees, std::span<const Ray> rays, cons
   finish_placed_list<Layout>(list, trees, rays.data(), found, hits);
 }
 
-/// Works out one hit, whose ray below the placement is still at hand.
+/// Works out one hit, whose ray below the placement and edge functions are still at hand.
 template <class Layout>
-HWY_INLINE void finish_one_placed(const PlacedTrees& trees, const KernelRay& local, const PlacedHit& found,
-                                  Hit& hit) {
+HWY_INLINE void finish_one_placed(const PlacedTrees& trees, const PlacedWalk<Layout>& walk, Hit& hit) {
+  const PlacedHit& found = walk.hit;
   const PlacedTree& placed = trees.items()[found.item];
-  finish_one<Layout>(*placed.tree, local, found, hit);
+  finish_one<Layout>(*placed.tree, walk.local[walk.winner], found, walk.edges[walk.winner], hit);
   hit.normal = normal_in_world(placed.object_from_world, hit.normal);
 }
 

@@ -29,6 +29,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_WASM
 inline constexpr int kWidth = 4;  // children of a node: one vector
+#elif HWY_TARGET == HWY_AVX3
+inline constexpr int kWidth = 16;
 #else
 inline constexpr int kWidth = 8;
 #endif

@@ -67,19 +67,19 @@ HWY_INLINE bool take_closest(const TriangleBlock& block, std::uint32_t at, std::
   return changed;
 }
 
-/// Calls take(block, its place, lanes, ts) with the crossings in each block of a leaf at a t in [ray.t_min,
-/// limit()]; ends early when that returns true, and returns whether it did.
+/// Calls take(block, its place, edges, lanes, ts) with the crossings in each block of a leaf at a t in
+/// [ray.t_min, limit()]; ends early when that returns true, and returns whether it did.
 template <class Layout, class Limit, class Take>
 HWY_INLINE bool visit_leaf(const char* pool, std::uint32_t ref, const KernelRay& ray, const Limit& limit,
                            const Take& take) {
   const char* p = blocks_at(pool, ref);
   for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, p += Layout::kBlockBytes) {
     const TriangleBlock& block = Layout::block(p);
-    const Crossed crossed = test_edges(block, ray);
-    if (crossed.maybe == 0) continue;
+    const Edges edges = test_edges(block, ray);
+    if (edges.crossed.maybe == 0) continue;
     HWY_ALIGN float ts[kBlockWidth];
-    const std::uint32_t lanes = test_planes(block, ray, crossed, limit(), ts);
-    if (take(block, units(pool, p), lanes, ts)) return true;
+    const std::uint32_t lanes = test_planes(block, ray, edges.crossed, limit(), ts);
+    if (take(block, units(pool, p), edges, lanes, ts)) return true;
   }
   return false;
 }
@@ -89,15 +89,19 @@ template <class D>
 HWY_INLINE hn::Vec<DI4> first_four(D, hn::Vec<D> v) {
   if constexpr (kWidth == 4)
     return v;
-  else
+  else if constexpr (kWidth == 8)
     return hn::LowerHalf(DI4(), v);
+  else
+    return hn::LowerHalf(DI4(), hn::LowerHalf(hn::Half<D>(), v));
 }
 template <class D>
 HWY_INLINE hn::Vec<D> as_children(D d, hn::Vec<DI4> v) {
   if constexpr (kWidth == 4)
     return v;
-  else
+  else if constexpr (kWidth == 8)
     return hn::ZeroExtendVector(d, v);
+  else
+    return hn::ZeroExtendVector(d, hn::ZeroExtendVector(hn::Half<D>(), v));
 }
 
 /// Stores the references of the children that are entered, and their keys, the farthest first.
@@ -113,16 +117,28 @@ HWY_INLINE void push_children(D di, hn::Vec<D> keys, hn::Mask<D> enters, const s
     hn::StoreU(first, d4, stack_keys);
     hn::Vec<D> lanes = as_children(di, first);
     if constexpr (kWidth == 4 || HWY_IS_DEBUG_BUILD)
-      lanes = hn::And(lanes, hn::Set(di, 7));  // others look at 3 bits
+      lanes = hn::And(lanes, hn::Set(di, kChildBits));  // others look at no more bits
     const hn::Vec<D> sorted = hn::TableLookupLanes(hn::Load(di, children), hn::IndicesFromVec(di, lanes));
     hn::StoreU(first_four(di, sorted), d4, stack_refs);
     return;
   }
 
-  if constexpr (kWidth == 8) {
-    const hn::Vec<D> sorted = sort_eight_descending(di, keys);
+  if constexpr (kWidth > 4) {
+    if constexpr (kWidth > 8) {
+      if (HWY_LIKELY(count <= 8)) {
+        const hn::Half<D> d8;
+        const auto first = sort_eight_descending(d8, hn::LowerHalf(d8, keys));
+        hn::StoreU(first, d8, stack_keys);
+        hn::Vec<D> lanes = hn::ZeroExtendVector(di, first);
+        if constexpr (HWY_IS_DEBUG_BUILD) lanes = hn::And(lanes, hn::Set(di, kChildBits));
+        const hn::Vec<D> sorted = hn::TableLookupLanes(hn::Load(di, children), hn::IndicesFromVec(di, lanes));
+        hn::StoreU(hn::LowerHalf(d8, sorted), d8, stack_refs);
+        return;
+      }
+    }
+    const hn::Vec<D> sorted = sort_all_descending(di, keys);
     hn::StoreU(sorted, di, stack_keys);
-    const auto lanes = hn::IndicesFromVec(di, hn::And(sorted, hn::Set(di, 7)));
+    const auto lanes = hn::IndicesFromVec(di, hn::And(sorted, hn::Set(di, kChildBits)));
     hn::StoreU(hn::TableLookupLanes(hn::Load(di, children), lanes), di, stack_refs);
   }
 }
@@ -134,10 +150,17 @@ HWY_INLINE void read_anew(const T*& pointer) {
   asm volatile("" : "+r"(pointer));
 }
 
+/// The edge functions of the block that was hit last, for finish_one (finish-inl.h).
+struct EdgesOfHit {
+  HWY_ALIGN float wa[kBlockWidth];
+  HWY_ALIGN float wb[kBlockWidth];
+  HWY_ALIGN float wc[kBlockWidth];
+};
+
 /// result.t is the limit before.
 template <class Layout, class Way>
-HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const Way& way,
-                                  TriangleHit& result) {
+HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const Way& way, TriangleHit& result,
+                                  EdgesOfHit& edges_of_hit) {
   const DIW di;
   const KernelRay* constants = &ray;
   TriangleHit hit = result;
@@ -176,25 +199,35 @@ HWY_NOINLINE void closest_hit_one(const char* pool, const KernelRay& ray, const 
           continue;
         }
         const auto count = static_cast<std::size_t>(__builtin_popcount(bits));
-        for (std::uint32_t b = bits; b; b &= b - 1)
-          prefetch_lines<Layout::kNodeLines>(
-              node_at(pool, static_cast<std::uint32_t>(children[__builtin_ctz(b)])));
         push_children(di, make_keys(slabs.entry), slabs.enters, children, count, keys + top + 1,
                       refs + top + 1);
         top += count - 1;
         current = static_cast<std::uint32_t>(refs[top + 1]);
+        prefetch_lines<Layout::kNodeLines>(node_at(pool, static_cast<std::uint32_t>(refs[top])));
         continue;
       }
     } else {
       if (current == kBottom) break;
       visit_leaf<Layout>(
           pool, current, ray, [&] { return way.limit(hit.t); },
-          [&](const TriangleBlock& block, std::uint32_t at, std::uint32_t lanes, const float* ts) {
-            take_closest(block, at, lanes, ts, hit, way);
+          [&](const TriangleBlock& block, std::uint32_t at, const Edges& edges, std::uint32_t lanes,
+              const float* ts) {
+            // Mostly one triangle is crossed, and which one the edges have said: what is worked out of it
+            // need not wait for the plane.
+            const std::uint32_t maybe = edges.crossed.maybe;
+            if (HWY_LIKELY((maybe & (maybe - 1)) == 0)) {
+              if (lanes == 0) return false;
+              lanes = maybe;
+            }
+            if (take_closest(block, at, lanes, ts, hit, way)) {
+              hn::Store(edges.wa, D4(), edges_of_hit.wa);
+              hn::Store(edges.wb, D4(), edges_of_hit.wb);
+              hn::Store(edges.wc, D4(), edges_of_hit.wc);
+            }
             return false;
           });
     }
-    const std::int32_t limit_key = std::bit_cast<std::int32_t>(way.limit(hit.t)) | 7;
+    const std::int32_t limit_key = std::bit_cast<std::int32_t>(way.limit(hit.t)) | kChildBits;
     while (keys[top] > limit_key) --top;
     current = static_cast<std::uint32_t>(refs[top]);
     --top;
@@ -249,7 +282,7 @@ HWY_NOINLINE bool any_hit_one(const char* pool, const KernelRay& ray, const Way&
   return enter_leaves<Layout, Way::kSigned>(pool, ray, limit, [&](std::uint32_t leaf) {
     return visit_leaf<Layout>(
         pool, leaf, ray, [&] { return limit; },
-        [&](const TriangleBlock&, std::uint32_t, std::uint32_t lanes, const float* ts) {
+        [&](const TriangleBlock&, std::uint32_t, const Edges&, std::uint32_t lanes, const float* ts) {
           for (; lanes; lanes &= lanes - 1)
             if (way.admits(way.move(ts[__builtin_ctz(lanes)]))) return true;
           return false;
@@ -264,7 +297,8 @@ HWY_NOINLINE void all_hits_one(const char* pool, const KernelRay& ray, const Way
   enter_leaves<Layout, Way::kSigned>(pool, ray, limit, [&](std::uint32_t leaf) {
     return visit_leaf<Layout>(
         pool, leaf, ray, [&] { return limit; },
-        [&](const TriangleBlock& block, std::uint32_t at, std::uint32_t lanes, const float* ts) {
+        [&](const TriangleBlock& block, std::uint32_t at, const Edges&, std::uint32_t lanes,
+            const float* ts) {
           for (; lanes; lanes &= lanes - 1) {
             const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
             if (is_padding(block.key, static_cast<int>(lane))) continue;

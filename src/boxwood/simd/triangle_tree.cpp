@@ -174,11 +174,15 @@ WideBvh<W> TriangleTree::unpack() const {
 
 template TriangleTree::TriangleTree(const WideBvh<4>&, const Fetch&, Layout, Executor&);
 template TriangleTree::TriangleTree(const WideBvh<8>&, const Fetch&, Layout, Executor&);
+template TriangleTree::TriangleTree(const WideBvh<16>&, const Fetch&, Layout, Executor&);
 template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
                                     std::span<const std::uint32_t>, Executor&, Layout);
 template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
                                     std::span<const std::uint32_t>, Executor&, Layout);
+template TriangleTree::TriangleTree(const WideBvh<16>&, std::span<const Triangle>,
+                                    std::span<const std::uint32_t>, Executor&, Layout);
 template WideBvh<4> TriangleTree::unpack() const;
 template WideBvh<8> TriangleTree::unpack() const;
+template WideBvh<16> TriangleTree::unpack() const;
 
 }  // namespace boxwood::simd

@@ -158,11 +158,15 @@ class TriangleTree {
 
 extern template TriangleTree::TriangleTree(const WideBvh<4>&, const Fetch&, Layout, Executor&);
 extern template TriangleTree::TriangleTree(const WideBvh<8>&, const Fetch&, Layout, Executor&);
+extern template TriangleTree::TriangleTree(const WideBvh<16>&, const Fetch&, Layout, Executor&);
 extern template TriangleTree::TriangleTree(const WideBvh<4>&, std::span<const Triangle>,
                                            std::span<const std::uint32_t>, Executor&, Layout);
 extern template TriangleTree::TriangleTree(const WideBvh<8>&, std::span<const Triangle>,
                                            std::span<const std::uint32_t>, Executor&, Layout);
+extern template TriangleTree::TriangleTree(const WideBvh<16>&, std::span<const Triangle>,
+                                           std::span<const std::uint32_t>, Executor&, Layout);
 extern template WideBvh<4> TriangleTree::unpack() const;
 extern template WideBvh<8> TriangleTree::unpack() const;
+extern template WideBvh<16> TriangleTree::unpack() const;
 
 }  // namespace boxwood::simd

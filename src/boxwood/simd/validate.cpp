@@ -46,7 +46,7 @@ std::string check(const TriangleTree& tree) {
 }  // namespace
 
 std::string validate(const TriangleTree& tree) {
-  return tree.width() == 4 ? check<4>(tree) : check<8>(tree);
+  return with_width(tree.width(), [&](auto w) { return check<w()>(tree); });
 }
 
 }  // namespace boxwood::simd

@@ -18,9 +18,12 @@ constexpr std::uint32_t kMaxLeafSize = kMaxLeafBlocks * kBlockWidth;
 /// A subtree from its parent's view.
 template <int W>
 struct Plan {
-  float cost[W - 1];    ///< [n - 1]: the least, as at most n children of a wide node. Never rises with n.
-  std::uint32_t count;  ///< Primitives.
+  float cost[W - 1];  ///< [n - 1]: the least, as at most n children of a wide node. Never rises with n.
+  std::uint16_t
+      steps;  ///< Entries of `cost` that may differ from the one before: no more than binary leaves.
+  std::uint16_t count;  ///< Primitives, or kMaxLeafSize + 1 if there are more.
 };
+static_assert(sizeof(Plan<16>) == 64 && sizeof(Plan<8>) == 32);
 
 /// What one task emits; references count from 0 in it.
 template <int W>
@@ -104,24 +107,35 @@ class Collapser {
     Plan<W>& plan = plans_[i];
     const float area = area_of(node.box);
     if (node.is_leaf()) {
-      plan.count = node.box.is_empty() ? 0 : node.count;
-      std::fill(plan.cost, plan.cost + W - 1, area * cost_.block * float(blocks_for(plan.count)));
+      const std::uint32_t count = node.box.is_empty() ? 0 : node.count;
+      plan.steps = 1;
+      plan.count = at_most_one_too_many(count);
+      std::fill(plan.cost, plan.cost + W - 1, area * cost_.block * float(blocks_for(count)));
       return;
     }
-    const Plan<W>&left = plans_[node.first_index], &right = plans_[node.first_index + 1];
-    plan.count = left.count + right.count;
+    const Plan<W>*few = &plans_[node.first_index], *many = few + 1;
+    if (few->steps > many->steps) std::swap(few, many);
+    plan.count = at_most_one_too_many(std::uint32_t(few->count) + many->count);
 
-    // dealt[n - 2]: n children, k of them to the left and the rest to the right, the best k.
-    float padded[3 * W], dealt[W];
-    std::fill(padded, padded + 3 * W, kInfinity);
-    std::copy(right.cost, right.cost + W - 1, padded + W);
-    std::fill(dealt, dealt + W, kInfinity);
-    for (int k = 0; k < W - 1; ++k)
-      for (int n = 0; n < W; ++n) dealt[n] = std::min(dealt[n], left.cost[k] + padded[W + n - k]);
+    // dealt[n - 2]: n children, k of them to one side and the rest to the other, the best k. Most nodes have
+    // few leaves below them, and so few ways to deal.
+    float dealt[2 * W], padded[W];
+    const int most = few->steps + many->steps;
+    std::fill(dealt, dealt + 2 * W, kInfinity);
+    std::copy(many->cost, many->cost + W - 1, padded);
+    padded[W - 1] = kInfinity;
+    for (int k = 0; k < few->steps; ++k)
+      for (int n = 0; n < many->steps; n += 4)
+        for (int lane = n; lane < n + 4; ++lane)
+          dealt[k + lane] = std::min(dealt[k + lane], few->cost[k] + padded[lane]);
 
     // As one child: a wide node of its own, or a leaf.
-    plan.cost[0] = std::min(area * cost_.node + dealt[W - 2], leaf_cost(i, area));
+    plan.cost[0] = std::min(area * cost_.node + dealt[std::min(most, W) - 2], leaf_cost(i, area));
+    plan.steps = static_cast<std::uint16_t>(std::min(most, W - 1));
     for (int n = 1; n < W - 1; ++n) plan.cost[n] = std::min(plan.cost[n - 1], dealt[n - 1]);
+  }
+  static std::uint16_t at_most_one_too_many(std::uint32_t count) {
+    return static_cast<std::uint16_t>(std::min(count, kMaxLeafSize + 1));
   }
 
   static float area_of(const Box3& box) {
@@ -306,5 +320,6 @@ WideBvh<W> collapse(const BvhView& bvh, Executor& executor, WideCost cost) {
 
 template WideBvh<4> collapse<4>(const BvhView&, Executor&, WideCost);
 template WideBvh<8> collapse<8>(const BvhView&, Executor&, WideCost);
+template WideBvh<16> collapse<16>(const BvhView&, Executor&, WideCost);
 
 }  // namespace boxwood

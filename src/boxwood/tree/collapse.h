@@ -30,5 +30,6 @@ WideBvh<W> collapse(const BvhView& bvh, Executor& executor, WideCost cost = {});
 
 extern template WideBvh<4> collapse<4>(const BvhView&, Executor&, WideCost);
 extern template WideBvh<8> collapse<8>(const BvhView&, Executor&, WideCost);
+extern template WideBvh<16> collapse<16>(const BvhView&, Executor&, WideCost);
 
 }  // namespace boxwood

@@ -64,9 +64,12 @@ TreeShape tree_shape(const WideBvh<W>& wide);
 
 extern template double sah_cost(const WideBvh<4>&, WideCost);
 extern template double sah_cost(const WideBvh<8>&, WideCost);
+extern template double sah_cost(const WideBvh<16>&, WideCost);
 extern template double end_point_overlap(const WideBvh<4>&, std::span<const Box3>, WideCost);
 extern template double end_point_overlap(const WideBvh<8>&, std::span<const Box3>, WideCost);
+extern template double end_point_overlap(const WideBvh<16>&, std::span<const Box3>, WideCost);
 extern template TreeShape tree_shape(const WideBvh<4>&);
 extern template TreeShape tree_shape(const WideBvh<8>&);
+extern template TreeShape tree_shape(const WideBvh<16>&);
 
 }  // namespace boxwood

@@ -127,9 +127,12 @@ TreeShape tree_shape(const WideBvh<W>& wide) {
 
 template double sah_cost(const WideBvh<4>&, WideCost);
 template double sah_cost(const WideBvh<8>&, WideCost);
+template double sah_cost(const WideBvh<16>&, WideCost);
 template double end_point_overlap(const WideBvh<4>&, std::span<const Box3>, WideCost);
 template double end_point_overlap(const WideBvh<8>&, std::span<const Box3>, WideCost);
+template double end_point_overlap(const WideBvh<16>&, std::span<const Box3>, WideCost);
 template TreeShape tree_shape(const WideBvh<4>&);
 template TreeShape tree_shape(const WideBvh<8>&);
+template TreeShape tree_shape(const WideBvh<16>&);
 
 }  // namespace boxwood

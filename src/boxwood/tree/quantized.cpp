@@ -65,5 +65,6 @@ QuantizedNode<W>::QuantizedNode(const WideNode<W>& node) {
 
 template struct QuantizedNode<4>;
 template struct QuantizedNode<8>;
+template struct QuantizedNode<16>;
 
 }  // namespace boxwood

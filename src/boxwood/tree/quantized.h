@@ -3,8 +3,8 @@
 // Each plane becomes one byte: a step on a grid between the ends of the node's own box, rounded outwards, so
 // that no box is smaller than it was. A grid's step is a power of two, so step times byte is exact, and a
 // plane is one rounded sum: the same bits on every machine, fused or not. Ylitie, Karras and Laine,
-// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017. Eight children take
-// 128 bytes, four take 64.
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017. Sixteen children
+// take 192 bytes, eight 128, four 64.
 //
 // Invariant: the box of a child holds the box that was quantized. It may stick out of the node's own box, by
 // less than a step; the box of an empty child is turned inside out, but may look like a point where a step is
@@ -41,6 +41,7 @@ struct alignas(64) QuantizedNode {
     return node;
   }
 };
-static_assert(sizeof(QuantizedNode<8>) == 128 && sizeof(QuantizedNode<4>) == 64);
+static_assert(sizeof(QuantizedNode<16>) == 192 && sizeof(QuantizedNode<8>) == 128 &&
+              sizeof(QuantizedNode<4>) == 64);
 
 }  // namespace boxwood

@@ -25,5 +25,6 @@ std::string validate(const WideBvh<W>& wide, std::span<const Box3> boxes);
 
 extern template std::string validate(const WideBvh<4>&, std::span<const Box3>);
 extern template std::string validate(const WideBvh<8>&, std::span<const Box3>);
+extern template std::string validate(const WideBvh<16>&, std::span<const Box3>);
 
 }  // namespace boxwood

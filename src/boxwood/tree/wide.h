@@ -1,10 +1,10 @@
-// wide.h: how does a tree with four or eight children a node lie in memory?
+// wide.h: how does a tree with four, eight or sixteen children a node lie in memory?
 //
 // A node holds rows of planes, so that one vector is the same plane of all children, and one reference for
-// each child. Eight children take 256 bytes, four cache lines; four take 128. Leaves are runs of blocks of
-// kBlockWidth primitives, which a kernel tests together; a block that is not full repeats its first
-// primitive. Data only: collapse (collapse.h) makes it from a binary tree, validate says the first broken
-// invariant:
+// each child. Sixteen children take 448 bytes, seven cache lines; eight take 256, four 128. Leaves are runs
+// of blocks of kBlockWidth primitives, which a kernel tests together; a block that is not full repeats its
+// first primitive. Data only: collapse (collapse.h) makes it from a binary tree, validate says the first
+// broken invariant:
 //
 //  1. nodes is empty when there are no primitives; otherwise node 0 is the root.
 //  2. A child is an interior node behind its parent in the array, a run of 1 to kMaxLeafBlocks blocks, or
@@ -17,7 +17,9 @@
 //  6. No node lies deeper than kMaxWideDepth, so that a query can keep its stack in a fixed array.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "boxwood/core/id.h"
@@ -59,7 +61,10 @@ struct alignas(64) WideNode {
 
   /// All children empty.
   WideNode() {
-    for (int c = 0; c < W; ++c) set(c, Box3{}, ChildRef{});
+    for (int k = 0; k < 3; ++k) {  // row by row: every child with Box3{} and ChildRef{}
+      std::fill_n(planes[k][0], W, Box3{}.lower[k]);
+      std::fill_n(planes[k][1], W, Box3{}.upper[k]);
+    }
   }
   Box3 box(int child) const {
     Box3 box;
@@ -77,7 +82,7 @@ struct alignas(64) WideNode {
     children[child] = ref;
   }
 };
-static_assert(sizeof(WideNode<8>) == 256 && sizeof(WideNode<4>) == 128);
+static_assert(sizeof(WideNode<16>) == 448 && sizeof(WideNode<8>) == 256 && sizeof(WideNode<4>) == 128);
 
 /// Whether a slot of a block, or the key of a lane, only fills the block.
 template <class T>
@@ -98,5 +103,14 @@ struct WideBvh {
     return nodes.size() * sizeof(WideNode<W>) + slots.size() * sizeof(PrimId);
   }
 };
+
+/// Calls f with the number of children of a node as a constant of the program, W in
+/// std::integral_constant<int, W>.
+template <class F>
+decltype(auto) with_width(int width, const F& f) {
+  if (width == 4) return f(std::integral_constant<int, 4>());
+  if (width == 8) return f(std::integral_constant<int, 8>());
+  return f(std::integral_constant<int, 16>());
+}
 
 }  // namespace boxwood
