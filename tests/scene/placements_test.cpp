@@ -179,30 +179,6 @@ TEST(Placements, OfAnySize) {
   }
 }
 
-// Trees so deep, one on the other, that no short stack holds what a ray leaves behind.
-TEST(Placements, OfDeepTrees) {
-  TriangleMesh row;
-  for (std::uint32_t i = 0; i < 120; ++i) {
-    const float x = std::ldexp(1.0f, static_cast<int>(i) / 4 - 15) * (1 + 0.25f * float(i % 4));
-    for (const Vec3 p : {Vec3{x, 0, 0}, Vec3{x, 1, 0}, Vec3{x, 0, 1}}) row.positions.push_back(p);
-    row.indices.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  SceneDesc desc;
-  const GeometryId id = desc.add(row);
-  for (int i = 0; i < 120; ++i)
-    desc.add({id,
-              Affine3::translation({std::ldexp(1.0f, i / 4 - 15) * (1 + 0.25f * float(i % 4)), 0, 0}) *
-                  Affine3::scale(0.5f),
-              {}});
-  BuildOptions options;
-  options.method = Method::longest_axis;
-  options.leaf_size = 1;
-  const Scene scene(std::move(desc), options);
-  std::vector<Ray> rays = rays_among_placements(scene, 300, 7);
-  for (int i = 0; i < 100; ++i) rays.push_back({{-1, 0.001f * float(i), 0.1f}, 0, {1, 0, 0}});
-  EXPECT_GT(check_all(scene, rays, true), 100u);
-}
-
 TEST(Placements, OfNothing) {
   SceneDesc desc;
   const GeometryId empty = desc.add(TriangleMesh{}), none = desc.add(std::vector<Sphere>{});
