@@ -105,7 +105,7 @@ struct KernelsFor {
                                 Hit& full) {
     KernelRay world;
     if (!prepare(ray, bounds, BoxTree::kSlack, world)) return false;
-    PlacedWalk<Layout> walk{trees, ray, world, hit};
+    PlacedWalk<Layout> walk(trees, ray, world, hit);
     visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
     if (walk.is_unusual) return false;
     hit = walk.hit;

@@ -85,6 +85,11 @@ struct PlacedWalk {
   int winner = 0;  // which of both belong to the hit
   bool is_unusual = false;
 
+  /// Written out: what is not named in braces would be set to 0, half a kilobyte for each ray.
+  HWY_INLINE PlacedWalk(const PlacedTrees& trees, const Ray& ray, const KernelRay& world,
+                        const PlacedHit& hit)
+      : trees(trees), ray(ray), world(world), hit(hit) {}
+
   HWY_INLINE float visit(std::uint32_t item) {
     const PlacedTree& placed = trees.items()[item];
     Moved way;

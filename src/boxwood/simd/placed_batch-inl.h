@@ -327,7 +327,7 @@ void trace_placed(const PlacedTrees& trees, const Box3& bounds, const Ray* rays,
       if (search.is_hit) hit.item = 0;
       is_unusual = search.is_unusual;
     } else {
-      PlacedWalk<Layout> walk{trees, rays[i], world, hit};
+      PlacedWalk<Layout> walk(trees, rays[i], world, hit);
       visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
       hit = walk.hit;
       is_unusual = walk.is_unusual;
