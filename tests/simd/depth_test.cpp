@@ -3,10 +3,13 @@
 // A binary leaf at kMaxDepth may hold any number of primitives, and a wide tree puts further levels below it.
 // Here every level above leaves as much behind as it can, and the rays that are asked enter every box.
 #include <algorithm>
+#include <memory>
+#include <numeric>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "boxwood/build/build.h"
 #include "boxwood/query/traverse_wide.h"
 #include "boxwood/tree/collapse.h"
 #include "boxwood/tree/validate.h"
@@ -115,6 +118,25 @@ void expect_room(bool path_is_first) {
     EXPECT_EQ(hit.key, deep.triangles.size() - kCrowd / 2);
     EXPECT_TRUE(is_hit);
     EXPECT_EQ(hits.size(), 1u);
+
+    // And when it goes below a placement by itself, where so deep a tree is walked ray by ray also in a
+    // batch.
+    const Box3 world_box[] = {wide.box};
+    const Bvh top = build(world_box);
+    const PlacedTrees trees(
+        BoxTree(collapse<W>(top, serial_executor()), world_box),
+        {{Affine3::identity(), wide.box, wide.box, &tree, tree.pool(), tree.box_slack(), 0, 0}});
+    std::vector<std::uint32_t> order(rays.size()), unusual;
+    std::iota(order.begin(), order.end(), 0u);
+    const std::unique_ptr<bool[]> are_hit(new bool[rays.size()]);
+    std::vector<PlacedHit> found(rays.size(), PlacedHit{{kInfinity}});
+    kernels->closest_hits_below(trees, rays, wide.box, order, found.data(), nullptr, unusual);
+    kernels->any_hits_below(trees, rays, wide.box, order, are_hit.get(), unusual);
+    EXPECT_EQ(unusual.size(), 0u);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(found[i].key, answers[i].crossings[0].second);
+      EXPECT_TRUE(are_hit[i]);
+    }
   }
 }
 

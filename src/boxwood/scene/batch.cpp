@@ -1,10 +1,12 @@
 // batch.cpp: how are many rays answered?
 //
-// In chunks, one for each task: the kernel takes a chunk's rays in turns and says what each does to the
-// world's triangles, plain C++ answers the few rays that it does not take, and then every answer is worked
-// out. A chunk is long enough that the kernel is rarely short of rays, and its findings stay in the cache.
+// In chunks, one for each task: kernels take a chunk's rays in turns and say what each does to the world's
+// triangles, and then to those below placements, within the limit that the world left. Answers are worked
+// out, plain C++ adds other shapes, and answers the few rays that kernels do not take. A chunk is long enough
+// that a kernel is rarely short of rays, and its findings stay in the cache.
 #include "boxwood/scene/batch.h"
 
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,8 +24,14 @@ void check_lengths(std::size_t rays, std::size_t hits) {
                                 std::to_string(hits) + " hits, expected the same number");
 }
 
-/// A thread's memory between a kernel and the answers; taken while in use, because a user's own shape may ask
-/// a scene from inside.
+/// A thread's memory between kernels and the answers.
+struct Buffers {
+  std::vector<simd::TriangleHit> found;
+  std::vector<simd::PlacedHit> placed;
+  std::vector<std::uint32_t> order, unusual;
+};
+
+/// The buffers of this thread; taken while in use, because a user's own shape may ask a scene from inside.
 class Scratch {
  public:
   Scratch() : buffers_(std::exchange(spare(), {})) {
@@ -33,14 +41,9 @@ class Scratch {
   ~Scratch() { spare() = std::move(buffers_); }
   Scratch(const Scratch&) = delete;
 
-  simd::TriangleHit* found() { return buffers_.found.data(); }
-  std::vector<std::uint32_t>& unusual() { return buffers_.unusual; }
+  Buffers* operator->() { return &buffers_; }
 
  private:
-  struct Buffers {
-    std::vector<simd::TriangleHit> found;
-    std::vector<std::uint32_t> unusual;
-  };
   static Buffers& spare() {
     static thread_local Buffers mine;
     return mine;
@@ -48,30 +51,70 @@ class Scratch {
   Buffers buffers_;
 };
 
-/// Works out the answers for a scene of triangles only.
-void finish_triangles(const Scene::Parts& parts, std::span<const Ray> rays, const simd::TriangleHit* found,
-                      Hit* hits) {
+/// Takes the rays below placements, where triangles may be hit sooner than scratch->found says of the
+/// world's; forgets what is not the first. What is hit there is in scratch->placed.
+void hit_placed(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scratch, const Hit* answers) {
+  const bool has_world = !parts.world.triangles.is_empty();
+  std::vector<simd::PlacedHit>& placed = scratch->placed;
+  placed.resize(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) placed[i] = {{rays[i].t_max + 0.0f}};
+  if (has_world)
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const simd::TriangleHit& found = scratch->found[i];
+      if (!found.is_hit()) continue;
+      placed[i].t = found.t;
+      placed[i].instance = parts.world.mesh_of(found.key).instance_id.value;
+    }
+  scratch->order.resize(rays.size());
+  std::iota(scratch->order.begin(), scratch->order.end(), 0u);
+  parts.kernels->closest_hits_below(parts.placed_trees, rays, parts.bounds, scratch->order, placed.data(),
+                                    answers, scratch->unusual);
+  if (has_world)
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (placed[i].is_placed()) scratch->found[i] = {};
+}
+
+/// Works out answers for the world's triangles.
+void finish_world(const Scene::Parts& parts, std::span<const Ray> rays, const simd::TriangleHit* found,
+                  Hit* hits) {
+  parts.kernels->finish_hits(parts.world.triangles, rays, found, hits);
+  // Without a branch: who hits and who does not is hard to foresee.
+  const auto name = [&](std::size_t i, const PartMesh& mesh) {
+    const std::uint32_t none = 0u - static_cast<std::uint32_t>(!found[i].is_hit());
+    hits[i].instance_id = InstanceId(mesh.instance_id.value | none);
+    hits[i].geometry_id = GeometryId(mesh.geometry_id.value | none);
+    hits[i].primitive_id = PrimId((found[i].key - mesh.first_key) | none);
+  };
+  const std::vector<PartMesh>& meshes = parts.world.meshes;
+  if (meshes.size() == 1) {
+    const PartMesh only = meshes[0];
+    for (std::size_t i = 0; i < rays.size(); ++i) name(i, only);
+  } else {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      name(i, parts.world.mesh_of(found[i].is_hit() ? found[i].key : 0));
+  }
+}
+
+/// Works out answers below placements; leaves others alone.
+void finish_placed(const Scene::Parts& parts, std::span<const Ray> rays, const simd::PlacedHit* placed,
+                   Hit* hits) {
+  parts.kernels->finish_hits_below(parts.placed_trees, rays, placed, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (placed[i].is_placed()) detail::name_placed_hit(parts, placed[i], hits[i]);
+}
+
+/// Works out all answers for triangles.
+void finish(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scratch, Hit* hits) {
   // A few at a time, so that they are still in the nearest cache when they get their ids.
   constexpr std::size_t kStep = 128;
   for (std::size_t begin = 0; begin < rays.size(); begin += kStep) {
-    const std::size_t end = std::min(begin + kStep, rays.size());
-    parts.kernels->finish_hits(parts.world.triangles, rays.subspan(begin, end - begin), found + begin,
-                               hits + begin);
-    // Without a branch: who hits and who does not is hard to foresee.
-    const auto name = [&](std::size_t i, const PartMesh& mesh) {
-      const std::uint32_t none = 0u - static_cast<std::uint32_t>(!found[i].is_hit());
-      hits[i].instance_id = InstanceId(mesh.instance_id.value | none);
-      hits[i].geometry_id = GeometryId(mesh.geometry_id.value | none);
-      hits[i].primitive_id = PrimId((found[i].key - mesh.first_key) | none);
-    };
-    const std::vector<PartMesh>& meshes = parts.world.meshes;
-    if (meshes.size() == 1) {
-      const PartMesh only = meshes[0];
-      for (std::size_t i = begin; i < end; ++i) name(i, only);
-    } else {
-      for (std::size_t i = begin; i < end; ++i)
-        name(i, parts.world.mesh_of(found[i].is_hit() ? found[i].key : 0));
-    }
+    const std::span<const Ray> some = rays.subspan(begin, std::min(kStep, rays.size() - begin));
+    if (!parts.world.triangles.is_empty())
+      finish_world(parts, some, scratch->found.data() + begin, hits + begin);
+    else
+      std::fill_n(hits + begin, some.size(), Hit{});
+    if (parts.placed_trees.has_triangles())
+      finish_placed(parts, some, scratch->placed.data() + begin, hits + begin);
   }
 }
 
@@ -85,15 +128,21 @@ void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* h
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = walk_closest(parts, rays[i], none);
     return;
   }
+
+  // Find the triangles, in the world and below placements. Rays that are not ordinary are answered by plain
+  // C++ in the end.
   Scratch scratch;
-  simd::TriangleHit* const found = scratch.found();
-  std::vector<std::uint32_t>& unusual = scratch.unusual();
-  parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
-  for (const std::uint32_t i : unusual) found[i] = {};
-  if (parts.is_only_triangles)
-    finish_triangles(parts, rays, found, hits);
-  else
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = add_others(parts, rays[i], found[i]);
+  std::vector<std::uint32_t>& unusual = scratch->unusual;
+  if (!parts.world.triangles.is_empty()) {
+    simd::TriangleHit* const found = scratch->found.data();
+    parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
+    for (const std::uint32_t i : unusual) found[i] = {};
+  }
+  if (parts.placed_trees.has_triangles()) hit_placed(parts, rays, scratch, hits);
+
+  finish(parts, rays, scratch, hits);
+  if (parts.has_shapes)
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = add_shapes(parts, rays[i], hits[i]);
   for (const std::uint32_t i : unusual) hits[i] = walk_closest(parts, rays[i], none);
 }
 
@@ -103,12 +152,20 @@ void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits
     return;
   }
   Scratch scratch;
-  std::vector<std::uint32_t>& unusual = scratch.unusual();
-  parts.kernels->any_hits(parts.world.triangles, rays, parts.bounds, hits, unusual);
+  std::vector<std::uint32_t>&order = scratch->order, &unusual = scratch->unusual;
+  std::fill_n(hits, rays.size(), false);
+  if (!parts.world.triangles.is_empty())
+    parts.kernels->any_hits(parts.world.triangles, rays, parts.bounds, hits, unusual);
+  if (parts.placed_trees.has_triangles()) {
+    order.clear();
+    for (std::uint32_t i = 0; i < rays.size(); ++i)
+      if (!hits[i]) order.push_back(i);
+    parts.kernels->any_hits_below(parts.placed_trees, rays, parts.bounds, order, hits, unusual);
+  }
+  if (parts.has_shapes)
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!hits[i]) hits[i] = is_shape_hit(parts, rays[i]);
   for (const std::uint32_t i : unusual) hits[i] = walk_any(parts, rays[i]);
-  if (parts.is_only_triangles) return;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!hits[i]) hits[i] = is_other_hit(parts, rays[i]);
 }
 
 }  // namespace detail

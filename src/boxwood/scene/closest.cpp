@@ -70,24 +70,57 @@ void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit) {
   hit.normal = is_moved ? normalize(transform_normal(object_from_world, normal)) : normal;
 }
 
-Hit add_others(const Scene::Parts& parts, const Ray& ray, const simd::TriangleHit& triangle) {
+bool hit_triangles(const Scene::Parts& parts, const Ray& ray, Hit& hit) {
+  if (!parts.kernels) return false;
+  simd::PlacedHit placed{{ray.t_max + 0.0f}};
+  if (!parts.world.triangles.is_empty()) {
+    simd::TriangleHit found;
+    if (!parts.kernels->closest_full_hit(parts.world.triangles, ray, parts.bounds, found, hit)) return false;
+    if (found.is_hit()) {
+      name_hit(parts.world, found.key, hit);
+      placed.t = hit.t;
+      placed.instance = hit.instance_id.value;
+    }
+  }
+  if (!parts.placed_trees.has_triangles()) return true;
+  if (!parts.kernels->closest_hit_below(parts.placed_trees, ray, parts.bounds, placed, hit)) return false;
+  if (placed.is_placed()) name_placed_hit(parts, placed, hit);
+  return true;
+}
+
+bool are_triangles_hit(const Scene::Parts& parts, const Ray& ray, bool& is_hit) {
+  if (!parts.kernels) return false;
+  if (!parts.world.triangles.is_empty()) {
+    if (!parts.kernels->any_hit(parts.world.triangles, ray, parts.bounds, is_hit)) return false;
+    if (is_hit) return true;
+  }
+  return !parts.placed_trees.has_triangles() ||
+         parts.kernels->any_hit_below(parts.placed_trees, ray, parts.bounds, is_hit);
+}
+
+Hit add_shapes(const Scene::Parts& parts, const Ray& ray, const Hit& triangle) {
   // Begin with the triangle, as if the walk had met it first.
   const PreparedRay prepared(ray, parts.bounds);
   if (!prepared.is_valid()) return {};
   ClosestSink sink{prepared.t_max};
-  Hit on_triangle;
-  if (triangle.is_hit()) {
-    on_triangle = finish_triangle(parts, ray, triangle);
-    sink.report({on_triangle.t, on_triangle.u, on_triangle.v, 0}, on_triangle.instance_id,
-                on_triangle.primitive_id);
-  }
+  if (triangle.is_hit())
+    sink.report({triangle.t, triangle.u, triangle.v, 0}, triangle.instance_id, triangle.primitive_id);
   NoStatistics none;
-  walk_others(parts, prepared, sink, none);
+  walk_others(parts, prepared, Show::other_shapes, sink, none);
   if (!sink.crossing.is_hit()) return {};
-  if (sink.instance_id == on_triangle.instance_id) return on_triangle;  // no other shape has its instance
+  if (sink.instance_id == triangle.instance_id) return triangle;  // no other shape has its instance
   Hit hit = make_hit(parts, sink.crossing, sink.instance_id, sink.primitive_id);
   fill_normal(parts, prepared, hit);
   return hit;
+}
+
+bool is_shape_hit(const Scene::Parts& parts, const Ray& ray) {
+  const PreparedRay prepared(ray, parts.bounds);
+  if (!prepared.is_valid()) return false;
+  AnySink sink{prepared.t_max};
+  NoStatistics none;
+  walk_others(parts, prepared, Show::other_shapes, sink, none);
+  return sink.found;
 }
 
 Hit walk_closest(const Scene::Parts& parts, const Ray& ray, NoStatistics& statistics) {
@@ -103,15 +136,6 @@ bool walk_any(const Scene::Parts& parts, const Ray& ray) {
   AnySink sink{prepared.t_max};
   NoStatistics none;
   walk(parts, prepared, sink, none);
-  return sink.found;
-}
-
-bool is_other_hit(const Scene::Parts& parts, const Ray& ray) {
-  const PreparedRay prepared(ray, parts.bounds);
-  if (!prepared.is_valid()) return false;
-  AnySink sink{prepared.t_max};
-  NoStatistics none;
-  walk_others(parts, prepared, sink, none);
   return sink.found;
 }
 

@@ -47,16 +47,26 @@ inline Hit finish_triangle(const Scene::Parts& parts, const Ray& ray, const simd
 /// Works out the normal from the description.
 void fill_normal(const Scene::Parts& parts, const PreparedRay& ray, Hit& hit);
 
-/// The closest hit, when `triangle` is what the ray does to the world's triangles (perhaps a miss). `ray` is
-/// one that the kernel took.
-Hit add_others(const Scene::Parts& parts, const Ray& ray, const simd::TriangleHit& triangle);
+/// Has kernels find the first hit on a triangle, in the world and below placements; false when they do not
+/// take the ray.
+bool hit_triangles(const Scene::Parts& parts, const Ray& ray, Hit& hit);
+bool are_triangles_hit(const Scene::Parts& parts, const Ray& ray, bool& is_hit);
+
+/// Says which triangle below a placement was hit.
+inline void name_placed_hit(const Scene::Parts& parts, const simd::PlacedHit& found, Hit& hit) {
+  hit.instance_id = InstanceId(found.instance);
+  hit.geometry_id = GeometryId(parts.placed_trees.items()[found.item].geometry);
+  hit.primitive_id = PrimId(found.key);  // an object has one mesh, whose keys begin with 0
+}
+
+/// The closest hit, when `triangle` is that on a triangle (perhaps a miss). `ray` is one that kernels took.
+Hit add_shapes(const Scene::Parts& parts, const Ray& ray, const Hit& triangle);
+/// Whether any other shape is hit.
+bool is_shape_hit(const Scene::Parts& parts, const Ray& ray);
 
 /// Without a kernel, for any ray.
 Hit walk_closest(const Scene::Parts& parts, const Ray& ray, NoStatistics& statistics);
 Hit walk_closest(const Scene::Parts& parts, const Ray& ray, TraversalStatistics& statistics);
 bool walk_any(const Scene::Parts& parts, const Ray& ray);
-
-/// Whether anything is hit but the world's triangles.
-bool is_other_hit(const Scene::Parts& parts, const Ray& ray);
 
 }  // namespace boxwood::detail

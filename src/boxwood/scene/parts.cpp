@@ -161,6 +161,22 @@ void build_trees(Part& part, const SceneDesc& desc, const BuildOptions& options,
   part.bounds = unite(part.triangles.box(), part.shape_bvh.bounds());
 }
 
+/// What kernels walk below the placements of `parts`, which are in the order of their tree.
+template <int W>
+simd::PlacedTrees place_trees(const Scene::Parts& parts, Executor& executor) {
+  std::vector<Box3> boxes;
+  std::vector<simd::PlacedTree> items;
+  for (const Placement& placement : parts.placements) {
+    const Part& object = parts.objects[placement.part_index];
+    const simd::TriangleTree* tree = object.triangles.is_empty() ? nullptr : &object.triangles;
+    boxes.push_back(placement.world_box);
+    items.push_back({placement.object_from_world, placement.world_box, object.bounds, tree,
+                     object.triangles.pool(), object.triangles.box_slack(), placement.instance_id.value,
+                     parts.instances[placement.instance_id.value].geometry.value});
+  }
+  return {simd::BoxTree(collapse<W>(parts.top_level, executor, {.leaf_size = 1}), boxes), std::move(items)};
+}
+
 /// Why the nearest point of `geometry` under a transform is not known; empty when it is.
 std::string closest_point_obstacle(const Geometry& geometry, bool under_similarity) {
   if (std::holds_alternative<TriangleMesh>(geometry.shapes) ||
@@ -226,18 +242,18 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
         !(is_finite(placement.world_box.lower) && is_finite(placement.world_box.upper)))
       throw std::invalid_argument("scene: instance " + std::to_string(placement.instance_id.value) +
                                   " reaches beyond what a float can hold");
+  BuildOptions top_level = options;
+  top_level.leaf_size = 1;  // a tree below each, which costs much more than a box
   parts->top_level = build_in_leaf_order(
-      parts->placements, [](const Placement& p) { return p.world_box; }, options, executor);
-  std::vector<Box3> placed_boxes;
-  for (const Placement& placement : parts->placements) placed_boxes.push_back(placement.world_box);
-  parts->placement_tree = with_width(
-      width, [&](auto w) { return simd::BoxTree(collapse<w()>(parts->top_level, executor), placed_boxes); });
+      parts->placements, [](const Placement& p) { return p.world_box; }, top_level, executor);
+  parts->placed_trees = with_width(width, [&](auto w) { return place_trees<w()>(*parts, executor); });
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
-  // Choose who answers for the world's triangles.
-  const simd::TriangleTree& triangles = parts->world.triangles;
-  if (!triangles.is_empty() && triangles.is_ordinary()) parts->kernels = kernels;
-  parts->is_only_triangles = parts->world.shapes.empty() && parts->placements.empty();
+  // Choose who answers.
+  for (const Part& object : parts->objects) parts->has_placed_shapes |= !object.shapes.empty();
+  parts->has_shapes = parts->has_placed_shapes || !parts->world.shapes.empty();
+  parts->is_only_triangles = !parts->has_shapes && parts->placements.empty();
+  if (parts->world.triangles.is_ordinary() && parts->placed_trees.is_ordinary()) parts->kernels = kernels;
 
   parts->build_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

@@ -1,8 +1,8 @@
 // scene.cpp: how is a ray answered?
 //
-// A kernel (simd/kernels.h) finds what the ray does to the world's triangles; rays that it does not take are
-// walked by plain C++ (walk.h), with the same answer. Other shapes and placements follow, within the limit
-// that the triangles left. Batches are in batch.cpp.
+// Kernels (simd/kernels.h) find what the ray does to triangles, in the world and below placements; rays that
+// they do not take are walked by plain C++ (walk.h), with the same answer. Other shapes follow, within the
+// limit that the triangles left. Batches are in batch.cpp.
 #include "boxwood/scene/scene.h"
 
 #include <algorithm>
@@ -26,6 +26,12 @@ struct AllSink {
   }
 };
 
+/// Has a kernel list what the ray crosses of the world's triangles; false when none takes the ray.
+bool ask_world(const Scene::Parts& parts, const Ray& ray, std::vector<simd::TriangleHit>& found) {
+  if (parts.world.triangles.is_empty()) return true;
+  return parts.kernels && parts.kernels->all_hits(parts.world.triangles, ray, parts.bounds, found);
+}
+
 /// Leaves one of each crossing of a triangle, which may stand in several leaves. `hits` are sorted.
 void drop_repeated(const Scene::Parts& parts, std::vector<Hit>& hits) {
   const auto is_repeated = [&parts](const Hit& a, const Hit& b) {
@@ -43,17 +49,11 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Hit Scene::closest_hit(const Ray& ray) const {
-  const Parts& parts = *parts_;
-  simd::TriangleHit found;
   Hit hit;
-  if (parts.kernels &&
-      parts.kernels->closest_full_hit(parts.world.triangles, ray, parts.bounds, found, hit)) {
-    if (!parts.is_only_triangles) return detail::add_others(parts, ray, found);
-    if (found.is_hit()) detail::name_hit(parts.world, found.key, hit);
-    return hit;
-  }
+  if (detail::hit_triangles(*parts_, ray, hit))
+    return parts_->has_shapes ? detail::add_shapes(*parts_, ray, hit) : hit;
   NoStatistics none;
-  return detail::walk_closest(parts, ray, none);
+  return detail::walk_closest(*parts_, ray, none);
 }
 
 Hit Scene::closest_hit(const Ray& ray, TraversalStatistics& statistics) const {
@@ -61,11 +61,10 @@ Hit Scene::closest_hit(const Ray& ray, TraversalStatistics& statistics) const {
 }
 
 bool Scene::any_hit(const Ray& ray) const {
-  const Parts& parts = *parts_;
   bool is_hit = false;
-  if (parts.kernels && parts.kernels->any_hit(parts.world.triangles, ray, parts.bounds, is_hit))
-    return is_hit || (!parts.is_only_triangles && detail::is_other_hit(parts, ray));
-  return detail::walk_any(parts, ray);
+  if (detail::are_triangles_hit(*parts_, ray, is_hit))
+    return is_hit || (parts_->has_shapes && detail::is_shape_hit(*parts_, ray));
+  return detail::walk_any(*parts_, ray);
 }
 
 void Scene::all_hits(const Ray& ray, std::vector<Hit>& hits) const {
@@ -73,8 +72,7 @@ void Scene::all_hits(const Ray& ray, std::vector<Hit>& hits) const {
   const Parts& parts = *parts_;
   static thread_local std::vector<simd::TriangleHit> found;
   found.clear();
-  const bool is_answered =
-      parts.kernels && parts.kernels->all_hits(parts.world.triangles, ray, parts.bounds, found);
+  const bool is_answered = ask_world(parts, ray, found);
   for (const simd::TriangleHit& hit : found) hits.push_back(detail::finish_triangle(parts, ray, hit));
 
   // Add what the kernel does not know.
@@ -85,7 +83,7 @@ void Scene::all_hits(const Ray& ray, std::vector<Hit>& hits) const {
     AllSink sink{parts, prepared.t_max, hits};
     NoStatistics none;
     if (!is_answered) detail::walk_triangles(parts.world, prepared, detail::NoPlacement{}, sink, none);
-    detail::walk_others(parts, prepared, sink, none);
+    detail::walk_others(parts, prepared, detail::Show::all, sink, none);
     for (std::size_t i = first; i < hits.size(); ++i) detail::fill_normal(parts, prepared, hits[i]);
   }
   std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return comes_before(a, b); });
@@ -97,8 +95,7 @@ std::size_t Scene::count_hits(const Ray& ray) const {
   const Parts& parts = *parts_;
   static thread_local std::vector<simd::TriangleHit> found;
   found.clear();
-  if (parts.is_only_triangles && parts.kernels &&
-      parts.kernels->all_hits(parts.world.triangles, ray, parts.bounds, found)) {
+  if (parts.is_only_triangles && ask_world(parts, ray, found)) {
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
     const auto last =
         std::unique(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.key == b.key; });
@@ -139,7 +136,7 @@ SceneStatistics Scene::statistics() const {
   add_part(parts_->world);
   for (const Part& object : parts_->objects) add_part(object);
   add_tree(parts_->top_level);
-  s.tree_bytes += parts_->placement_tree.size_bytes() + parts_->placements.size() * sizeof(Placement);
+  s.tree_bytes += parts_->placed_trees.size_bytes() + parts_->placements.size() * sizeof(Placement);
   return s;
 }
 

@@ -158,24 +158,30 @@ void walk_shapes(const Scene::Parts& parts, const Part& part, const PreparedRay&
   traverse(part.shape_bvh, shapes, statistics);
 }
 
+/// What a walk is to show: triangles may have been answered for already.
+enum class Show { all, other_shapes };
+
 /// Meets placements: takes the ray into object space and walks there.
 template <class Sink, class Statistics>
 class PlacementQuery {
  public:
-  PlacementQuery(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics)
-      : parts_(parts), ray_(ray), sink_(sink), statistics_(statistics) {}
+  PlacementQuery(const Scene::Parts& parts, const PreparedRay& ray, Show show, Sink& sink,
+                 Statistics& statistics)
+      : parts_(parts), ray_(ray), show_(show), sink_(sink), statistics_(statistics) {}
 
   float bound(const Box3& box) const { return ray_.bound(box); }
   float limit() const { return sink_.limit(); }
   void visit(PrimId id) {
     const Placement& placement = parts_.placements[id.value];
+    const Part& part = parts_.objects[placement.part_index];
+    if (show_ == Show::other_shapes && part.shapes.empty()) return;
     const UnderPlacement above{ray_, ray_.interval(placement.world_box), placement.instance_id};
     if (above.inside.is_empty()) return;
-    const Part& part = parts_.objects[placement.part_index];
     Labelled<Sink> any{sink_, {}, {}};
     const Ray ray{placement.object_from_world.point(ray_.origin), inner_t_min(ray_, above.inside),
                   placement.object_from_world.vector(ray_.direction), above.gate(any).limit()};
-    const bool is_answered = std::is_same_v<Statistics, NoStatistics> && ask_kernel(part, ray, above);
+    const bool is_answered = show_ == Show::other_shapes ||
+                             (std::is_same_v<Statistics, NoStatistics> && ask_kernel(part, ray, above));
     if (is_answered && part.shapes.empty()) return;
     const PreparedRay local(ray.origin, ray.direction, ray.t_min, ray.t_max, part.bounds);
     if (!local.is_valid()) return;
@@ -216,6 +222,7 @@ class PlacementQuery {
 
   const Scene::Parts& parts_;
   const PreparedRay& ray_;
+  Show show_;
   Sink& sink_;
   Statistics& statistics_;
 };
@@ -223,28 +230,31 @@ class PlacementQuery {
 /// Has a kernel find the placements that `query` must visit; false when there is none that takes the ray.
 template <class Query>
 bool visit_placements(const Scene::Parts& parts, const PreparedRay& ray, Query& query) {
-  if (parts.placement_tree.is_empty()) return true;
+  if (parts.placed_trees.is_empty()) return true;
   if (parts.placements.size() == 1) {  // which tells by itself that a ray passes it
     query.visit(PrimId(0));
     return true;
   }
   const simd::Kernels* kernels = simd::kernels();
-  if (!kernels || !parts.placement_tree.is_ordinary()) return false;
+  const simd::BoxTree& boxes = parts.placed_trees.boxes();
+  if (!kernels || !boxes.is_ordinary()) return false;
   const auto visit = [](void* context, std::uint32_t item) {
     Query& asked = *static_cast<Query*>(context);
     asked.visit(PrimId(item));
     return asked.limit();
   };
-  return kernels->visit_boxes(parts.placement_tree, {ray.origin, ray.t_min, ray.direction, query.limit()},
-                              parts.bounds, visit, &query);
+  return kernels->visit_boxes(boxes, {ray.origin, ray.t_min, ray.direction, query.limit()}, parts.bounds,
+                              visit, &query);
 }
 
-/// Shows `sink` everything that `ray` may meet but the world's triangles:
+/// Shows `sink` everything that `ray` may meet but the world's triangles, or all other shapes:
 /// sink.limit(), sink.report(crossing, instance_id, primitive_id).
 template <class Sink, class Statistics>
-void walk_others(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
+void walk_others(const Scene::Parts& parts, const PreparedRay& ray, Show show, Sink& sink,
+                 Statistics& statistics) {
   walk_shapes(parts, parts.world, ray, NoPlacement{}, sink, statistics);
-  PlacementQuery<Sink, Statistics> placements(parts, ray, sink, statistics);
+  if (show == Show::other_shapes && !parts.has_placed_shapes) return;
+  PlacementQuery<Sink, Statistics> placements(parts, ray, show, sink, statistics);
   if (!std::is_same_v<Statistics, NoStatistics> || !visit_placements(parts, ray, placements))
     traverse(parts.top_level, placements, statistics);
 }
@@ -253,7 +263,7 @@ void walk_others(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, 
 template <class Sink, class Statistics>
 void walk(const Scene::Parts& parts, const PreparedRay& ray, Sink& sink, Statistics& statistics) {
   walk_triangles(parts.world, ray, NoPlacement{}, sink, statistics);
-  walk_others(parts, ray, sink, statistics);
+  walk_others(parts, ray, Show::all, sink, statistics);
 }
 
 }  // namespace boxwood::detail

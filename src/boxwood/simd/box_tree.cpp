@@ -61,14 +61,23 @@ class Unpacker {
   std::vector<WideNode<W>> nodes_;
 };
 
-/// Of the deepest node; children stand behind their parents.
+/// How far a walk may go: the depth of the deepest node, and the most children that it leaves behind.
+struct Reach {
+  int depth = 0, max_stack = 0;
+};
+
 template <int W>
-int depth_of(const std::vector<WideNode<W>>& nodes) {
-  std::vector<int> depth(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
+Reach find_reach(const std::vector<WideNode<W>>& nodes) {
+  std::vector<Reach> above(nodes.size());  // children stand behind their parents
+  Reach most;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    int left = above[i].max_stack;
+    for (const ChildRef child : nodes[i].children) left += !child.is_empty();
+    most = {std::max(most.depth, above[i].depth), std::max(most.max_stack, left)};
     for (const ChildRef child : nodes[i].children)
-      if (!child.is_leaf()) depth[child.index()] = depth[i] + 1;
-  return *std::max_element(depth.begin(), depth.end());
+      if (!child.is_leaf()) above[child.index()] = {above[i].depth + 1, left - 1};
+  }
+  return most;
 }
 
 }  // namespace
@@ -80,12 +89,17 @@ BoxTree::BoxTree(const WideBvh<W>& wide, std::span<const Box3> boxes) : width_(W
   constexpr std::uint32_t kUnits = sizeof(WideNode<W>) / TriangleTree::kUnit;  // in which kernels count
   if (nodes.size() >= (std::size_t(1) << 28) / kUnits || boxes.size() >= std::size_t(1) << 28)
     throw std::length_error("a tree of so many boxes cannot be addressed by 28 bits");
+  const Reach reach = find_reach(nodes);
+  max_stack_ = reach.max_stack;
   is_ordinary_ =
       max(max_component(abs(wide.box.lower)), max_component(abs(wide.box.upper))) <= kLargestReach &&
-      depth_of(nodes) <= kMaxWideDepth;
+      reach.depth <= kMaxWideDepth;
   for (WideNode<W>& node : nodes)
-    for (ChildRef& child : node.children)
-      if (!child.is_leaf()) child = ChildRef::node(child.index() * kUnits);
+    for (ChildRef& child : node.children) {
+      if (child.is_empty()) continue;
+      child = child.is_leaf() ? ChildRef{child.index() << 4 | kItem} : ChildRef::node(child.index() * kUnits);
+    }
+  if (nodes.size() == 1 && reach.max_stack == 1) first_ = nodes[0].children[0].bits;
   pool_ = MemoryBlock(nodes.size() * sizeof(WideNode<W>), 64);
   std::memcpy(pool_.data(), nodes.data(), pool_.size());
 }

@@ -27,16 +27,22 @@ class BoxTree {
   bool is_empty() const { return pool_.size() == 0; }
   /// Whether kernels may walk it: its boxes lie where no float overflows, and not too deep for their stack.
   bool is_ordinary() const { return is_ordinary_; }
+  /// Where a walk begins: at the root node, or at the only item, which knows its own box.
+  std::uint32_t first() const { return first_; }
+  /// The most children that a walk ever leaves behind for later.
+  int max_stack() const { return max_stack_; }
   int width() const { return width_; }
   const char* pool() const { return pool_.data(); }
   std::size_t size_bytes() const { return pool_.size(); }
 
-  /// The item that a reference to a leaf names.
+  /// The low bits of a reference to a leaf, which is none of triangles; the item that it names.
+  static constexpr std::uint32_t kItem = 3;
   static constexpr std::uint32_t item_of(std::uint32_t leaf) { return leaf >> 4; }
 
  private:
   MemoryBlock pool_;
-  int width_ = 8;
+  std::uint32_t first_ = 0;
+  int width_ = 8, max_stack_ = 0;
   bool is_ordinary_ = true;
 };
 

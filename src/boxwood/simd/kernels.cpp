@@ -11,6 +11,8 @@
 #include "boxwood/simd/boxes-inl.h"
 #include "boxwood/simd/closest_point-inl.h"
 #include "boxwood/simd/finish-inl.h"
+#include "boxwood/simd/placed_batch-inl.h"
+#include "boxwood/simd/placed_finish-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::simd::HWY_NAMESPACE {
@@ -99,6 +101,45 @@ struct KernelsFor {
     finish_all<Layout>(tree, rays, found, hits);
   }
 
+  static bool closest_hit_below(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, PlacedHit& hit,
+                                Hit& full) {
+    KernelRay world;
+    if (!prepare(ray, bounds, BoxTree::kSlack, world)) return false;
+    PlacedWalk<Layout> walk(trees, ray, world, hit);
+    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
+    if (walk.is_unusual) return false;
+    hit = walk.hit;
+    if (hit.is_placed()) finish_one_placed<Layout>(trees, walk, full);
+    return true;
+  }
+
+  static bool any_hit_below(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, bool& is_hit) {
+    KernelRay world;
+    if (!prepare(ray, bounds, BoxTree::kSlack, world)) return false;
+    PlacedSearch<Layout> search{trees, ray, world, ray.t_max + 0.0f};
+    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, search.limit, search);
+    if (search.is_unusual) return false;
+    is_hit = search.is_hit;
+    return true;
+  }
+
+  static void closest_hits_below(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
+                                 std::span<const std::uint32_t> order, PlacedHit* hits, const Hit* answers,
+                                 std::vector<std::uint32_t>& unusual) {
+    trace_placed<Layout, false>(trees, bounds, rays.data(), order, ClosestPlaced{hits, answers}, unusual);
+  }
+
+  static void any_hits_below(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
+                             std::span<const std::uint32_t> order, bool* hits,
+                             std::vector<std::uint32_t>& unusual) {
+    trace_placed<Layout, true>(trees, bounds, rays.data(), order, AnyPlaced{rays.data(), hits}, unusual);
+  }
+
+  static void finish_hits_below(const PlacedTrees& trees, std::span<const Ray> rays, const PlacedHit* found,
+                                Hit* hits) {
+    finish_all_placed<Layout>(trees, rays, found, hits);
+  }
+
   static bool closest_point(const TriangleTree& tree, Vec3 point, float max_distance,
                             TrianglePoint& nearest) {
     if (!is_ordinary_point(point)) return false;
@@ -112,10 +153,10 @@ struct KernelsFor {
 /// Asks the kernel of the tree's layout.
 template <auto kFull, auto kCompact>
 struct Either;
-template <class Result, class... Args, Result (*kFull)(const TriangleTree&, Args...),
-          Result (*kCompact)(const TriangleTree&, Args...)>
+template <class Result, class Tree, class... Args, Result (*kFull)(const Tree&, Args...),
+          Result (*kCompact)(const Tree&, Args...)>
 struct Either<kFull, kCompact> {
-  static Result ask(const TriangleTree& tree, Args... args) {
+  static Result ask(const Tree& tree, Args... args) {
     return tree.layout() == Layout::full ? kFull(tree, args...) : kCompact(tree, args...);
   }
 };
@@ -125,7 +166,12 @@ using Compact = KernelsFor<CompactLayout>;
 bool visit_boxes(const BoxTree& tree, const Ray& ray, const Box3& bounds, VisitItem visit, void* context) {
   KernelRay kernel_ray;
   if (!prepare(ray, bounds, BoxTree::kSlack, kernel_ray)) return false;
-  visit_boxes_one(tree.pool(), kernel_ray, ray.t_max + 0.0f, visit, context);
+  struct Caller {
+    VisitItem call;
+    void* context;
+    float visit(std::uint32_t item) const { return call(context, item); }
+  } caller{visit, context};
+  visit_boxes_one(tree.pool(), 0, kernel_ray, ray.t_max + 0.0f, caller);
   return true;
 }
 
@@ -160,6 +206,11 @@ const Kernels* table() {
                                   Either<Full::closest_hits, Compact::closest_hits>::ask,
                                   Either<Full::any_hits, Compact::any_hits>::ask,
                                   Either<Full::finish_hits, Compact::finish_hits>::ask,
+                                  Either<Full::closest_hit_below, Compact::closest_hit_below>::ask,
+                                  Either<Full::any_hit_below, Compact::any_hit_below>::ask,
+                                  Either<Full::closest_hits_below, Compact::closest_hits_below>::ask,
+                                  Either<Full::any_hits_below, Compact::any_hits_below>::ask,
+                                  Either<Full::finish_hits_below, Compact::finish_hits_below>::ask,
                                   Either<Full::closest_point, Compact::closest_point>::ask};
   return &kTable;
 }

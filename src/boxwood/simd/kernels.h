@@ -12,8 +12,7 @@
 
 #include "boxwood/core/hit.h"
 #include "boxwood/core/prepared_ray.h"
-#include "boxwood/simd/box_tree.h"
-#include "boxwood/simd/triangle_tree.h"
+#include "boxwood/simd/placed_trees.h"
 
 namespace boxwood::simd {
 
@@ -26,6 +25,14 @@ struct TriangleHit {
   std::uint32_t lane = 0;       ///< In its block.
 
   bool is_hit() const { return block != kNone; }
+};
+
+/// The same below a placement, of which `item` is the number and `instance` the name (PlacedTree). Where
+/// nothing below a placement has been hit, t is the limit, and an equal t counts below `instance` only.
+struct PlacedHit : TriangleHit {
+  std::uint32_t item = kNone, instance = kNone;
+
+  bool is_placed() const { return item != kNone; }
 };
 
 /// The point of a triangle that is nearest to a given one. None: no block, and distance = +inf.
@@ -57,7 +64,8 @@ using VisitItem = float (*)(void* context, std::uint32_t item);
 /// ray is handed back for plain C++ to answer: single-ray calls return false and leave the answer alone,
 /// batches note the ray's index. Preconditions: tree.width() == width, tree.is_ordinary(), and the tree is
 /// not empty. Any number of threads may call. No call allocates, but for what it appends to vectors, and for
-/// the rays that a batch has in flight (40 kB): once for each thread that calls.
+/// the rays that a batch has in flight (40 kB, and 68 kB where it goes below placements): once for each
+/// thread that calls.
 struct Kernels {
   std::string_view name;  ///< "avx512", "avx2", "sse4", "neon", "wasm".
   int width;              ///< Children of a node in the trees that these kernels walk.
@@ -99,6 +107,25 @@ struct Kernels {
   /// are left to the caller.
   void (*finish_hits)(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
                       Hit* hits);
+
+  /// The first crossing of a triangle below a placement that comes before `hit`, equal t by (instance, key):
+  /// t counts as far as hit.t, and equal to that for instances below hit.instance. Fills `full`, but for the
+  /// ids, when there is one. `bounds` are the world's. Precondition, here and below: trees.is_ordinary(), and
+  /// they have triangles. False also for a ray that is not ordinary in the space of an object.
+  bool (*closest_hit_below)(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, PlacedHit& hit,
+                            Hit& full);
+  bool (*any_hit_below)(const PlacedTrees& trees, const Ray& ray, const Box3& bounds, bool& is_hit);
+  /// The same for the rays of which `order` has the indices: hits[i] belongs to rays[i], and is left alone
+  /// for rays whose indices are appended to `unusual`. `answers` as for closest_hits.
+  void (*closest_hits_below)(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
+                             std::span<const std::uint32_t> order, PlacedHit* hits, const Hit* answers,
+                             std::vector<std::uint32_t>& unusual);
+  void (*any_hits_below)(const PlacedTrees& trees, std::span<const Ray> rays, const Box3& bounds,
+                         std::span<const std::uint32_t> order, bool* hits,
+                         std::vector<std::uint32_t>& unusual);
+  /// As finish_hits, for each hit that is_placed(); others are left alone.
+  void (*finish_hits_below)(const PlacedTrees& trees, std::span<const Ray> rays, const PlacedHit* found,
+                            Hit* hits);
 
   /// The point of a triangle within `max_distance` that is nearest to `point`, equal distance by key: that of
   /// query/distance.h by brute force. `nearest.block` says where to look first, for instance at what the

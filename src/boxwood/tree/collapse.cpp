@@ -144,7 +144,7 @@ class Collapser {
   }
   float leaf_cost(std::uint32_t i, float area) const {
     const std::uint32_t count = plans_[i].count;
-    return count <= kMaxLeafSize ? area * cost_.block * float(blocks_for(count)) : kInfinity;
+    return count <= cost_.leaf_size ? area * cost_.block * float(blocks_for(count)) : kInfinity;
   }
   /// Whether a binary node that is one child is a leaf.
   bool is_leaf(std::uint32_t i) const {

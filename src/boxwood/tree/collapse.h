@@ -17,6 +17,8 @@ namespace boxwood {
 struct WideCost {
   float node = 1.0f;   ///< One step over the children of a node.
   float block = 0.5f;  ///< One test of a block of kBlockWidth primitives.
+  /// Subtrees of no more primitives may become leaves; at most kMaxLeafBlocks * kBlockWidth.
+  std::uint32_t leaf_size = kMaxLeafBlocks * kBlockWidth;
 };
 
 /// The wide tree of least expected cost among those that keep the binary tree's boxes. Subtrees become leaves
