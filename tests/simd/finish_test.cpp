@@ -20,7 +20,13 @@ std::vector<Ray> rays_at(const std::vector<Triangle>& triangles, std::size_t cou
   while (rays.size() < count) {
     const Triangle& t = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
     const float u = random.uniform(0, 0.6f), v = random.uniform(0, 0.5f);
-    const Vec3 to = random.below(8) ? t.a + (t.b - t.a) * u + (t.c - t.a) * v : t.b;
+    // Corners and points of edges too, where a weight is 0.
+    const std::uint32_t where = random.below(12);
+    const Vec3 to = where == 0   ? t.b
+                    : where == 1 ? t.a
+                    : where == 2 ? t.a + (t.b - t.a) * 0.5f
+                    : where == 3 ? t.a + (t.c - t.a) * 0.5f
+                                 : t.a + (t.b - t.a) * u + (t.c - t.a) * v;
     const Vec3 from = random.in_box(splat(-2), splat(2)) * scale;
     Vec3 way = (to - from) * (1 / scale);
     if (random.below(5) == 0) {
@@ -67,7 +73,8 @@ void expect_finished_right(const std::string& name, const std::vector<Triangle>&
           TriangleHit one;
           Hit full;
           ASSERT_TRUE(kernels->closest_full_hit(*tree, rays[i], bvh.bounds(), one, full));
-          wrong += one.key != found[i].key || !(full == hits[i]);
+          wrong += one.key != found[i].key || !(full == hits[i]) || !test::same_bits(full.u, crossing.u) ||
+                   !test::same_bits(full.v, crossing.v);
         }
         EXPECT_EQ(wrong, 0u) << kernels->name << ", " << count << " rays";
         EXPECT_GE(hit_count, count / 4) << "the rays are too easy";

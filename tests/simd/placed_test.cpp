@@ -80,7 +80,9 @@ std::size_t count_wrong_below(const Kernels& kernels, const PlacedTrees& trees, 
   intersect_triangle(
       RayShear(placed.object_from_world.point(ray.origin), placed.object_from_world.vector(ray.direction)),
       triangle.a, triangle.b, triangle.c, crossing);
-  wrong += !test::same_bits(full.t, t) || full.u != crossing.u || full.v != crossing.v ||
+  wrong += !test::same_bits(full.t, t) || !test::same_bits(full.u, crossing.u) ||
+           !test::same_bits(full.v, crossing.v) || !test::same_bits(batch_full.u, crossing.u) ||
+           !test::same_bits(batch_full.v, crossing.v) ||
            full.normal != normalize(transform_normal(placed.object_from_world, triangle.normal()));
   // What is as near already stays when its instance comes first, and not when it comes later.
   for (const std::uint32_t instance : {4u, 6u}) {

@@ -110,12 +110,12 @@ inline bool intersect_triangle(const RayShear& ray, Vec3 a, Vec3 b, Vec3 c, Cros
   // then the exact products decide here too.
   if (!(std::fabs(float_sum) > 0x1p-80f && std::fabs(float_sum) < 0x1p120f)) {
     const detail::ExactWeights exact(pa, pb, pc);
-    crossing.u = static_cast<float>(exact.b / exact.sum());
-    crossing.v = static_cast<float>(exact.c / exact.sum());
+    crossing.u = static_cast<float>(exact.b / exact.sum()) + 0.0f;  // as for t: -0 becomes +0
+    crossing.v = static_cast<float>(exact.c / exact.sum()) + 0.0f;
   } else {
     const float inverse_sum = 1.0f / float_sum;
-    crossing.u = wb * inverse_sum;
-    crossing.v = wc * inverse_sum;
+    crossing.u = wb * inverse_sum + 0.0f;
+    crossing.v = wc * inverse_sum + 0.0f;
   }
 
   // Where the line meets the plane: n.(a - o) / (n.d), with d = (sx, sy, 1) / sz in permuted axes.

@@ -68,7 +68,8 @@ HWY_INLINE Weights weigh(VF (&v)[3][3], VF (&origin)[3], VF (&direction)[3]) {
   const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
   const VF wa = edge(1, 2), wb = edge(2, 0), wc = edge(0, 1);
   const VF sum = hn::Add(hn::Add(wa, wb), wc), inverse_sum = hn::Div(hn::Set(d, 1.0f), sum);
-  return {hn::Mul(wb, inverse_sum), hn::Mul(wc, inverse_sum), sum};
+  const VF zero = hn::Zero(d);
+  return {hn::Add(hn::Mul(wb, inverse_sum), zero), hn::Add(hn::Mul(wc, inverse_sum), zero), sum};
 }
 
 /// The normals of the triangles with the vertices `v`.
@@ -279,8 +280,8 @@ HWY_INLINE void finish_one(const TriangleTree& tree, const KernelRay& ray, const
   const float wa = edges.wa[found.lane], wb = edges.wb[found.lane], wc = edges.wc[found.lane];
   const float sum = wa + wb + wc, inverse_sum = 1.0f / sum;
   hit.t = found.t;
-  hit.u = wb * inverse_sum;
-  hit.v = wc * inverse_sum;
+  hit.u = wb * inverse_sum + 0.0f;
+  hit.v = wc * inverse_sum + 0.0f;
   hit.normal = normal_of(block, lane, found.lane);
   const float size = std::fabs(sum);
   if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) return;
