@@ -1,8 +1,8 @@
 // upper_rungs.h: which rungs lie above the best binary tree?
 //
 // The wide tree asks all children of a node at once, still in plain C++ and for shapes of any kind. For
-// triangles a scene's kernels follow: the same tree, each node and each block of triangles in one go; one ray
-// after the other, and then a whole batch, whose rays take turns.
+// triangles a scene's kernels follow, on a tree as wide as their vectors, each node and block in one go; one
+// ray after the other, and then a whole batch, whose rays take turns.
 #pragma once
 
 #include <algorithm>

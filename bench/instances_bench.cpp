@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -150,11 +151,11 @@ void measure(const Scene& scene, const EmbreeInstances& embree, const app::RaySe
   const bool is_any = set.question == app::Question::any_hit;
   Rate single, batch, peer;
   std::vector<Hit> hits(rays.size());
-  const std::unique_ptr<bool[]> lit(new bool[rays.size()]);
+  const std::unique_ptr<bool[]> is_hidden(new bool[rays.size()]);
   const auto answers = [&] {
     app::Answers out;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (is_any ? lit[i] : hits[i].is_hit()) out.add_hit(is_any ? 1 : hits[i].t);
+      if (is_any ? is_hidden[i] : hits[i].is_hit()) out.add_hit(is_any ? 1 : hits[i].t);
     }
     return out;
   };
@@ -162,14 +163,14 @@ void measure(const Scene& scene, const EmbreeInstances& embree, const app::RaySe
     single.seconds.push_back(timed([&] {
       for (std::size_t i = 0; i < rays.size(); ++i)
         if (is_any)
-          lit[i] = scene.any_hit(rays[i]);
+          is_hidden[i] = scene.any_hit(rays[i]);
         else
           hits[i] = scene.closest_hit(rays[i]);
     }));
     single.answers = answers();
     batch.seconds.push_back(timed([&] {
       if (is_any)
-        scene.any_hit(rays, {lit.get(), rays.size()}, &serial_executor());
+        scene.any_hit(rays, {is_hidden.get(), rays.size()}, &serial_executor());
       else
         scene.closest_hit(rays, hits, &serial_executor());
     }));

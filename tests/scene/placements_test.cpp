@@ -179,6 +179,15 @@ TEST(Placements, OfAnySize) {
   }
 }
 
+TEST(Placements, OfNothingLeaveTheKernelsToTheWorld) {
+  SceneDesc desc;
+  desc.add(Instance{desc.add(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}})});
+  desc.add(Instance{desc.add(TriangleMesh{}), Affine3::translation({1, 2, 3})});
+  desc.add(Instance{desc.add(std::vector<Sphere>{{{0, 0, 0}, 1}}), Affine3::translation({1e12f, 0, 0})});
+  const Scene scene(std::move(desc));
+  EXPECT_EQ(scene.parts().kernels, simd::kernels());
+}
+
 TEST(Placements, OfNothing) {
   SceneDesc desc;
   const GeometryId empty = desc.add(TriangleMesh{}), none = desc.add(std::vector<Sphere>{});

@@ -21,7 +21,7 @@ namespace {
 // Bounds for light that is caught in glass, and for rays that pass through clear surfaces one behind the
 // other; roulette ends other paths long before.
 constexpr int kMaxBounces = 64, kMaxSteps = 1024;
-/// Hits are sorted by so many groups of materials, and those that hit nothing.
+/// Hits are sorted by so many groups: 0 hit nothing, the others are materials.
 constexpr std::size_t kMiss = 0, kGroups = 256;
 
 constexpr int kRouletteAfter = 3;  // bounces; early ones carry most of the picture

@@ -6,6 +6,7 @@
 // that a kernel is rarely short of rays, and its findings stay in the cache.
 #include "boxwood/scene/batch.h"
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -50,6 +51,13 @@ class Scratch {
   }
   Buffers buffers_;
 };
+
+/// What two kernels refused, one after the other, in order and once.
+std::span<const std::uint32_t> once_each(std::vector<std::uint32_t>& unusual) {
+  std::sort(unusual.begin(), unusual.end());
+  unusual.erase(std::unique(unusual.begin(), unusual.end()), unusual.end());
+  return unusual;
+}
 
 /// Takes the rays below placements, where triangles may be hit sooner than scratch->found says of the
 /// world's; forgets what is not the first. What is hit there is in scratch->placed.
@@ -143,7 +151,7 @@ void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* h
   finish(parts, rays, scratch, hits);
   if (parts.has_shapes)
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = add_shapes(parts, rays[i], hits[i]);
-  for (const std::uint32_t i : unusual) hits[i] = walk_closest(parts, rays[i], none);
+  for (const std::uint32_t i : once_each(unusual)) hits[i] = walk_closest(parts, rays[i], none);
 }
 
 void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits) {
@@ -165,7 +173,7 @@ void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits
   if (parts.has_shapes)
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (!hits[i]) hits[i] = is_shape_hit(parts, rays[i]);
-  for (const std::uint32_t i : unusual) hits[i] = walk_any(parts, rays[i]);
+  for (const std::uint32_t i : once_each(unusual)) hits[i] = walk_any(parts, rays[i]);
 }
 
 }  // namespace detail

@@ -59,7 +59,7 @@ inline void name_placed_hit(const Scene::Parts& parts, const simd::PlacedHit& fo
   hit.primitive_id = PrimId(found.key);  // an object has one mesh, whose keys begin with 0
 }
 
-/// The closest hit, when `triangle` is that on a triangle (perhaps a miss). `ray` is one that kernels took.
+/// The closest hit, when `triangle` is that on a triangle (perhaps a miss).
 Hit add_shapes(const Scene::Parts& parts, const Ray& ray, const Hit& triangle);
 /// Whether any other shape is hit.
 bool is_shape_hit(const Scene::Parts& parts, const Ray& ray);

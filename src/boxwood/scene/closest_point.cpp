@@ -158,8 +158,8 @@ ScenePoint find_point(const Scene::Parts& parts, Vec3 point, float max_distance,
   simd::TrianglePoint nearest;
   nearest.block = block;
   const View world{point, nullptr};
-  const simd::Kernels* kernels = parts.world_kernels();
-  if (kernels && kernels->closest_point(parts.world.triangles, point, max_distance, nearest)) {
+  if (!parts.world.triangles.is_empty() && parts.kernels &&
+      parts.kernels->closest_point(parts.world.triangles, point, max_distance, nearest)) {
     if (nearest.is_found()) {
       block = nearest.block;
       const PartMesh& mesh = parts.world.mesh_of(nearest.key);

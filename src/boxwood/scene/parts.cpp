@@ -253,7 +253,9 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   for (const Part& object : parts->objects) parts->has_placed_shapes |= !object.shapes.empty();
   parts->has_shapes = parts->has_placed_shapes || !parts->world.shapes.empty();
   parts->is_only_triangles = !parts->has_shapes && parts->placements.empty();
-  if (parts->world.triangles.is_ordinary() && parts->placed_trees.is_ordinary()) parts->kernels = kernels;
+  if (parts->world.triangles.is_ordinary() &&
+      (!parts->placed_trees.has_triangles() || parts->placed_trees.is_ordinary()))
+    parts->kernels = kernels;
 
   parts->build_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

@@ -72,13 +72,12 @@ struct Scene::Parts {
   Bvh top_level;                   ///< Over the world boxes of `placements`;
   simd::PlacedTrees placed_trees;  ///< and the same, with what stands there, for kernels.
   Box3 bounds;
-  /// Those for all triangles; null when plain C++ is to walk.
+  /// Those for all triangles; null when plain C++ is to walk, as it does when any tree of them is not
+  /// ordinary.
   const simd::Kernels* kernels = nullptr;
   bool has_shapes = false;         ///< Other than triangles, anywhere;
   bool has_placed_shapes = false;  ///< and below placements.
   bool is_only_triangles = false;  ///< The world's: no other shape and no placement.
-  /// The kernels, when there are triangles in the world.
-  const simd::Kernels* world_kernels() const { return world.triangles.is_empty() ? nullptr : kernels; }
   double build_ms = 0;
   std::string closest_point_obstacle;  ///< Why closest_point cannot be answered; empty when it can.
 };

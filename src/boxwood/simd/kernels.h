@@ -21,7 +21,7 @@ struct TriangleHit {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   float t = kInfinity;
   std::uint32_t key = kNone;    ///< TriangleBlock::key of the triangle.
-  std::uint32_t block = kNone;  ///< For TriangleTree::block_at.
+  std::uint32_t block = kNone;  ///< For TriangleTree::triangle().
   std::uint32_t lane = 0;       ///< In its block.
 
   bool is_hit() const { return block != kNone; }
@@ -64,8 +64,8 @@ using VisitItem = float (*)(void* context, std::uint32_t item);
 /// ray is handed back for plain C++ to answer: single-ray calls return false and leave the answer alone,
 /// batches note the ray's index. Preconditions: tree.width() == width, tree.is_ordinary(), and the tree is
 /// not empty. Any number of threads may call. No call allocates, but for what it appends to vectors, and for
-/// the rays that a batch has in flight (40 kB, and 68 kB where it goes below placements): once for each
-/// thread that calls.
+/// the rays that a batch has in flight (40 kB, and 68 kB where it goes below placements; 76 and 117 kB with
+/// sixteen children): once for each thread and question.
 struct Kernels {
   std::string_view name;  ///< "avx512", "avx2", "sse4", "neon", "wasm".
   int width;              ///< Children of a node in the trees that these kernels walk.

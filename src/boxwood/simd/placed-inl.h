@@ -34,7 +34,8 @@ HWY_INLINE Interval interval_inside(const Box3& box, const Ray& ray, const Kerne
           hn::GetLane(smallest(hn::IfThenElse(is_axis, exit, hn::Set(d, kInfinity))))};
 }
 
-/// Affine3::point and Affine3::vector, with the same operations.
+/// Affine3::point and Affine3::vector, with the same operations. Reads, and ignores, the float behind the
+/// map: one that stands in a PlacedTree has it.
 HWY_INLINE Ray in_object_space(const Affine3& object_from_world, const Ray& ray, float t_min) {
   const D4 d;
   const V4 x = hn::LoadU(d, &object_from_world.x.x), y = hn::LoadU(d, &object_from_world.y.x),

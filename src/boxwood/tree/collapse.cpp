@@ -18,9 +18,8 @@ constexpr std::uint32_t kMaxLeafSize = kMaxLeafBlocks * kBlockWidth;
 /// A subtree from its parent's view.
 template <int W>
 struct Plan {
-  float cost[W - 1];  ///< [n - 1]: the least, as at most n children of a wide node. Never rises with n.
-  std::uint16_t
-      steps;  ///< Entries of `cost` that may differ from the one before: no more than binary leaves.
+  float cost[W - 1];    ///< [n - 1]: the least, as at most n children of a wide node. Never rises with n.
+  std::uint16_t steps;  ///< Entries that may differ from the one before: at most the binary leaves.
   std::uint16_t count;  ///< Primitives, or kMaxLeafSize + 1 if there are more.
 };
 static_assert(sizeof(Plan<16>) == 64 && sizeof(Plan<8>) == 32);
