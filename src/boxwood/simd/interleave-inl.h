@@ -40,13 +40,31 @@ struct alignas(64) RayInFlight {
 };
 
 /// A block whose planes are still to be tested, and then what the test says.
+template <class RayState>
 struct OpenBlock {
-  RayInFlight* ray;
+  RayState* ray;
   const char* block;
   Crossed crossed;
   std::uint32_t lanes;
   alignas(16) float ts[kBlockWidth];
 };
+
+/// Keeps of a part of a stack, whose keys lie kStack behind, what may still matter up to `limit`; returns its
+/// end.
+template <int kStack>
+HWY_INLINE std::int32_t* cull(std::int32_t* to, const std::int32_t* end, float limit) {
+  const DIW di;
+  const VIW last = hn::Set(di, std::bit_cast<std::int32_t>(limit) | kChildBits);
+  for (const std::int32_t* from = to; from < end; from += kWidth) {
+    const VIW keys = hn::LoadU(di, from + kStack), refs = hn::LoadU(di, from);
+    const auto keep =
+        hn::And(hn::Not(hn::Gt(keys, last)), hn::FirstN(di, static_cast<std::size_t>(end - from)));
+    hn::StoreU(compress(di, keys, keep), di, to + kStack);
+    hn::StoreU(compress(di, refs, keep), di, to);
+    to += hn::CountTrue(di, keep);
+  }
+  return to;
+}
 
 template <class Layout, bool kAny, class Output>
 class Interleaved {
@@ -159,7 +177,7 @@ class Interleaved {
   /// Tests the leaves that rays stand before.
   HWY_INLINE void visit_leaves(RayInFlight** end) {
     // The edges first, and without a branch on what they say.
-    OpenBlock* open = open_;
+    OpenBlock<RayInFlight>* open = open_;
     for (RayInFlight** i = lists_[kLeaf]; i != end; ++i) {
       RayInFlight* ray = *i;
       const auto ref = static_cast<std::uint32_t>(*ray->top);
@@ -173,11 +191,11 @@ class Interleaved {
     }
 
     // The planes of what is left.
-    for (OpenBlock* o = open_; o != open; ++o)
+    for (OpenBlock<RayInFlight>* o = open_; o != open; ++o)
       o->lanes = test_planes(Layout::block(o->block), o->ray->ray, o->crossed, o->ray->hit.t, o->ts);
 
     // Only then what follows from it, which is hard to foresee.
-    for (OpenBlock* o = open_; o != open; ++o) {
+    for (OpenBlock<RayInFlight>* o = open_; o != open; ++o) {
       if (o->lanes == 0) continue;
       RayInFlight& ray = *o->ray;
       if constexpr (kAny) {
@@ -185,25 +203,9 @@ class Interleaved {
         ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
       } else {
         if (take_closest(Layout::block(o->block), units(pool_, o->block), o->lanes, o->ts, ray.hit))
-          cull(ray);
+          ray.top = cull<kShortStack>(ray.refs + 1, ray.top, ray.hit.t);
       }
     }
-  }
-
-  /// Keeps of the stack what may still matter, below the leaf on top.
-  HWY_INLINE void cull(RayInFlight& ray) {
-    const DIW di;
-    const VIW limit = hn::Set(di, std::bit_cast<std::int32_t>(ray.hit.t) | kChildBits);
-    std::int32_t *to = ray.refs + 1, *top = ray.top;
-    for (std::int32_t* from = to; from < top; from += kWidth) {
-      const VIW keys = hn::LoadU(di, from + kShortStack), refs = hn::LoadU(di, from);
-      const auto keep =
-          hn::And(hn::Not(hn::Gt(keys, limit)), hn::FirstN(di, static_cast<std::size_t>(top - from)));
-      hn::StoreU(compress(di, keys, keep), di, to + kShortStack);
-      hn::StoreU(compress(di, refs, keep), di, to);
-      to += hn::CountTrue(di, keep);
-    }
-    ray.top = to;
   }
 
   const char* pool_;
@@ -215,7 +217,7 @@ class Interleaved {
   std::vector<std::uint32_t>& unusual_;
   std::size_t next_ = 0;
   RayInFlight* lists_[3][kInFlight + 1];
-  OpenBlock open_[kInFlight * kMaxLeafBlocks + 1];
+  OpenBlock<RayInFlight> open_[kInFlight * kMaxLeafBlocks + 1];
 };
 
 }  // namespace boxwood::simd::HWY_NAMESPACE

@@ -47,15 +47,6 @@ struct alignas(64) PlacedRay {
 
 static_assert(sizeof(PlacedRay) / kLine % 2 == 1);
 
-/// A block whose planes are still to be tested, and then what the test says.
-struct OpenPlacedBlock {
-  PlacedRay* ray;
-  const char* block;
-  Crossed crossed;
-  std::uint32_t lanes;
-  alignas(16) float ts[kBlockWidth];
-};
-
 template <class Layout, bool kAny, class Output>
 class PlacedInterleaved {
  public:
@@ -188,7 +179,7 @@ class PlacedInterleaved {
   /// Tests the leaves that rays stand before.
   HWY_INLINE void visit_leaves(PlacedRay** end) {
     // The edges first, and without a branch on what they say.
-    OpenPlacedBlock* open = open_;
+    OpenBlock<PlacedRay>* open = open_;
     for (PlacedRay** i = lists_[kLeaf]; i != end; ++i) {
       PlacedRay* ray = *i;
       const auto ref = static_cast<std::uint32_t>(*ray->top);
@@ -202,11 +193,11 @@ class PlacedInterleaved {
     }
 
     // The planes of what is left.
-    for (OpenPlacedBlock* o = open_; o != open; ++o)
+    for (OpenBlock<PlacedRay>* o = open_; o != open; ++o)
       o->lanes = test_planes(Layout::block(o->block), o->ray->local, o->crossed, o->ray->limit, o->ts);
 
     // Only then what follows from it, which is hard to foresee.
-    for (OpenPlacedBlock* o = open_; o != open; ++o) {
+    for (OpenBlock<PlacedRay>* o = open_; o != open; ++o) {
       if (o->lanes == 0) continue;
       PlacedRay& ray = *o->ray;
       const TriangleBlock& block = Layout::block(o->block);
@@ -215,24 +206,9 @@ class PlacedInterleaved {
         ray.top = ray.bottom + 1;  // nothing else matters: the bottom is next
       } else {
         ray.limit = ray.way.limit(ray.hit.t);
-        ray.top = cull(ray.bottom + 1, ray.top, ray.limit);
+        ray.top = cull<kPlacedStack>(ray.bottom + 1, ray.top, ray.limit);
       }
     }
-  }
-
-  /// Keeps of a part of the stack what may still matter up to `limit`; returns its end.
-  HWY_INLINE std::int32_t* cull(std::int32_t* to, const std::int32_t* end, float limit) {
-    const DIW di;
-    const VIW last = hn::Set(di, std::bit_cast<std::int32_t>(limit) | kChildBits);
-    for (const std::int32_t* from = to; from < end; from += kWidth) {
-      const VIW keys = hn::LoadU(di, from + kPlacedStack), refs = hn::LoadU(di, from);
-      const auto keep =
-          hn::And(hn::Not(hn::Gt(keys, last)), hn::FirstN(di, static_cast<std::size_t>(end - from)));
-      hn::StoreU(compress(di, keys, keep), di, to + kPlacedStack);
-      hn::StoreU(compress(di, refs, keep), di, to);
-      to += hn::CountTrue(di, keep);
-    }
-    return to;
   }
 
   /// Takes the ray below the placement on top of its stack.
@@ -265,7 +241,7 @@ class PlacedInterleaved {
     std::int32_t* top = ray.bottom;
     if (ray.hit.is_hit()) {
       ray.best = {ray.hit, ray.item, items_[ray.item].instance};
-      top = kAny ? ray.refs + 1 : cull(ray.refs + 1, top, ray.best.t);
+      top = kAny ? ray.refs + 1 : cull<kPlacedStack>(ray.refs + 1, top, ray.best.t);
     }
     ray.ray = &ray.world;
     ray.pools[0] = world_pool_;
@@ -284,7 +260,7 @@ class PlacedInterleaved {
   std::vector<std::uint32_t>& unusual_;
   std::size_t next_ = 0;
   Lists lists_;
-  OpenPlacedBlock open_[kInFlight * kMaxLeafBlocks + 1];
+  OpenBlock<PlacedRay> open_[kInFlight * kMaxLeafBlocks + 1];
 };
 
 /// found[i] is what is to be beaten, and becomes what is hit; its t the limit.
