@@ -32,6 +32,24 @@ TEST(MetricsWide, SahCostByHand) {
   EXPECT_DOUBLE_EQ(sah_cost(point, {1, 0.5f}), 1 + 1 + 2 * 0.5 + 0.5);
 }
 
+TEST(MetricsWide, TheCollapseKnowsTheCost) {
+  Random random(8);
+  for (const std::size_t count : {40, 5000}) {
+    std::vector<Box3> boxes;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 at = random.in_box({0, 0, 0}, {10, 10, 10});
+      boxes.push_back({at, at + random.in_box({0, 0, 0}, {1, 1, 1})});
+    }
+    const Bvh bvh = test::random_tree(boxes, 3, 9);
+    for (const WideCost cost : {WideCost{}, WideCost{1, 2}}) {
+      const auto four = collapse<4>(bvh, serial_executor(), cost);
+      const auto sixteen = collapse<16>(bvh, serial_executor(), cost);
+      EXPECT_NEAR(four.cost, sah_cost(four, cost), 1e-4 * four.cost) << count;
+      EXPECT_NEAR(sixteen.cost, sah_cost(sixteen, cost), 1e-4 * sixteen.cost) << count;
+    }
+  }
+}
+
 TEST(MetricsWide, ShapeByHand) {
   const TreeShape shape = tree_shape(sample());
   EXPECT_EQ(shape.node_count, 2u);

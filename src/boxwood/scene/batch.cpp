@@ -12,7 +12,9 @@
 #include <string>
 #include <utility>
 
+#include "boxwood/core/raw_array.h"
 #include "boxwood/scene/closest.h"
+#include "boxwood/scene/ray_order.h"
 
 namespace boxwood {
 namespace {
@@ -178,18 +180,70 @@ void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits
 
 }  // namespace detail
 
+namespace {
+
+/// Calls in_turn(rays, answers) with parts of a batch that are answered in the order in which they come, and
+/// sorted(count, fill, take) with those that are sorted first.
+template <class Answer, class InTurn, class Sorted>
+void in_best_order(const Scene::Parts& parts, std::span<const Ray> rays, std::span<Answer> answers,
+                   Executor* executor, const InTurn& in_turn, const Sorted& sorted) {
+  if (!parts.kernels || !parts.world.may_sort_rays || rays.size() < detail::kLeastSorted)
+    return in_turn(rays, answers);
+  RawArray<std::uint64_t> order(std::min(rays.size(), detail::kMostSorted));
+  for (std::size_t begin = 0; begin < rays.size(); begin += detail::kMostSorted) {
+    const std::size_t count = std::min(rays.size() - begin, detail::kMostSorted);
+    const auto some = rays.subspan(begin, count);
+    const auto their_answers = answers.subspan(begin, count);
+    if (count < detail::kLeastSorted || !detail::are_scattered(some, parts.bounds)) {
+      in_turn(some, their_answers);
+      continue;
+    }
+    detail::find_ray_order(some, parts.bounds, std::span(order.data(), count),
+                           executor ? *executor : default_executor());
+    const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(order[i]); };
+    sorted(
+        count,
+        [&](std::size_t first, std::span<Ray> chunk) {
+          constexpr std::size_t kAhead = 16;
+          for (std::size_t i = 0; i < chunk.size(); ++i) {
+            __builtin_prefetch(&some[number(std::min(first + i + kAhead, count - 1))]);
+            chunk[i] = some[number(first + i)];
+          }
+        },
+        [&](std::size_t first, std::span<const Ray>, std::span<const Answer> found) {
+          for (std::size_t i = 0; i < found.size(); ++i) their_answers[number(first + i)] = found[i];
+        });
+  }
+}
+
+}  // namespace
+
 void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor) const {
   check_lengths(rays.size(), hits.size());
-  detail::for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
-    detail::answer_closest(*parts_, rays.subspan(begin, end - begin), &hits[begin]);
-  });
+  in_best_order(
+      *parts_, rays, hits, executor,
+      [&](std::span<const Ray> some, std::span<Hit> answers) {
+        detail::for_chunks(executor, some.size(), [&](std::size_t begin, std::size_t end) {
+          detail::answer_closest(*parts_, some.subspan(begin, end - begin), &answers[begin]);
+        });
+      },
+      [&](std::size_t count, const FillRays& fill, const Take<Ray, Hit>& take) {
+        stream_closest_hit(*this, {count, executor, {}}, fill, take);
+      });
 }
 
 void Scene::any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor) const {
   check_lengths(rays.size(), hits.size());
-  detail::for_chunks(executor, rays.size(), [&](std::size_t begin, std::size_t end) {
-    detail::answer_any(*parts_, rays.subspan(begin, end - begin), &hits[begin]);
-  });
+  in_best_order(
+      *parts_, rays, hits, executor,
+      [&](std::span<const Ray> some, std::span<bool> answers) {
+        detail::for_chunks(executor, some.size(), [&](std::size_t begin, std::size_t end) {
+          detail::answer_any(*parts_, some.subspan(begin, end - begin), &answers[begin]);
+        });
+      },
+      [&](std::size_t count, const FillRays& fill, const Take<Ray, bool>& take) {
+        stream_any_hit(*this, {count, executor, {}}, fill, take);
+      });
 }
 
 }  // namespace boxwood

@@ -5,6 +5,7 @@
 
 #include "boxwood/build/build.h"
 #include "boxwood/core/raw_array.h"
+#include "boxwood/scene/ray_order.h"
 #include "boxwood/shape/instance.h"
 #include "boxwood/tree/collapse.h"
 
@@ -126,8 +127,10 @@ simd::TriangleTree build_triangles(Part& part, const SceneDesc& desc, const Buil
       for (const std::uint32_t vertex : corners[i].index) prefetch(corners[i].vertices + vertex);
     }
   };
-  return simd::TriangleTree(wide, fetch, options.is_compact ? simd::Layout::compact : simd::Layout::full,
-                            executor);
+  simd::TriangleTree tree(wide, fetch, options.is_compact ? simd::Layout::compact : simd::Layout::full,
+                          executor);
+  part.may_sort_rays = detail::may_be_worth_sorting(tree.size_bytes(), wide.cost);
+  return tree;
 }
 
 /// Builds a tree over `items`, puts them into leaf order and makes prim_ids count along.

@@ -31,6 +31,7 @@ struct LeafShape {
 struct Part {
   simd::TriangleTree triangles;
   std::vector<PartMesh> meshes;  ///< By first_key.
+  bool may_sort_rays = false;    ///< See ray_order.h.
   Bvh shape_bvh;                 ///< prim_ids count 0, 1, 2, ...: the shapes stand in leaf order.
   std::vector<LeafShape> shapes;
   Box3 bounds;

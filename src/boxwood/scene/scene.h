@@ -60,7 +60,8 @@ class Scene {
 
   /// The same for many rays, in any order, and faster: hits[i] answers rays[i], bit for bit as the call with
   /// one ray. Throws std::invalid_argument when the lengths differ. Uses `executor`, by default oneTBB; up to
-  /// a few hundred rays are answered on the calling thread.
+  /// a few hundred rays are answered on the calling thread. Where order pays (ray_order.h) large batches are
+  /// sorted first, which takes 16 bytes for each of a million rays at a time.
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor = nullptr) const;
   void any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor = nullptr) const;
 

@@ -52,6 +52,7 @@ class Collapser {
     }
     parallel_for(executor_, 0, roots.size(), 1, [&](std::size_t i) { price_subtree(roots[i]); });
     for (std::size_t i = top.size(); i-- > 0;) price(top[i]);
+    if (const float area = area_of(wide.box); area > 0) wide.cost = plans_[0].cost[0] / area;
 
     // Emit the top; whatever hangs below it is a task again.
     Piece<W> head;

@@ -96,6 +96,7 @@ struct WideBvh {
   std::vector<PrimId> slots;  ///< kBlockWidth for each block.
   Box3 box;
   bool has_parts = false;  ///< Whether a primitive may stand in several leaves; queries must know.
+  float cost = 0;          ///< What the collapse made least: about sah_cost(*this), 0 where nobody knows.
 
   bool is_empty() const { return nodes.empty(); }
   std::size_t block_count() const { return slots.size() / kBlockWidth; }
