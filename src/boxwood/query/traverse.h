@@ -8,6 +8,7 @@
 #include <concepts>
 #include <limits>
 
+#include "boxwood/core/prefetch.h"
 #include "boxwood/core/prepared_ray.h"
 #include "boxwood/tree/bvh.h"
 
@@ -43,12 +44,6 @@ concept QueryOfPairs = Query<Q> && requires(Q query, const Box3& box) {
 };
 
 namespace detail {
-
-inline void prefetch([[maybe_unused]] const void* p) {
-#if defined(__GNUC__)
-  __builtin_prefetch(p);
-#endif
-}
 
 /// The bounds of two boxes; one matters that is no larger than its end.
 struct TwoBounds {
@@ -96,8 +91,8 @@ void traverse(const Bvh& bvh, Q& query, Statistics& statistics) {
       statistics.count_boxes(2);
       const std::uint32_t left = node.first_index, right = left + 1;
       const BvhNode* const children = &bvh.nodes[left];
-      detail::prefetch(bvh.nodes.data() + children[0].first_index);
-      detail::prefetch(bvh.nodes.data() + children[1].first_index);
+      prefetch(bvh.nodes.data() + children[0].first_index);
+      prefetch(bvh.nodes.data() + children[1].first_index);
 
       // Go to the nearer child; remember the farther one.
       const detail::TwoBounds bounds = detail::two_bounds(query, children[0].box, children[1].box);

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "boxwood/core/prefetch.h"
 #include "boxwood/core/raw_array.h"
 #include "boxwood/scene/closest.h"
 #include "boxwood/scene/ray_order.h"
@@ -206,7 +207,7 @@ void in_best_order(const Scene::Parts& parts, std::span<const Ray> rays, std::sp
         [&](std::size_t first, std::span<Ray> chunk) {
           constexpr std::size_t kAhead = 16;
           for (std::size_t i = 0; i < chunk.size(); ++i) {
-            __builtin_prefetch(&some[number(std::min(first + i + kAhead, count - 1))]);
+            prefetch(&some[number(std::min(first + i + kAhead, count - 1))]);
             chunk[i] = some[number(first + i)];
           }
         },

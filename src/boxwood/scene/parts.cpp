@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "boxwood/build/build.h"
+#include "boxwood/core/prefetch.h"
 #include "boxwood/core/raw_array.h"
 #include "boxwood/scene/ray_order.h"
 #include "boxwood/shape/instance.h"
@@ -51,10 +52,6 @@ void index_meshes(Part& part, std::size_t count) {
     part.mesh_of_page.push_back(mesh);
   }
   if (count > 0) part.mesh_of_page.push_back(static_cast<std::uint32_t>(part.meshes.size() - 1));
-}
-
-void prefetch(const void* p) {
-  __builtin_prefetch(p);
 }
 
 /// Builds the tree over the part's meshes, for nodes of W children.

@@ -1,19 +1,11 @@
 #include "boxwood/scene/surface_block.h"
 
 #include "boxwood/core/every_cpu.h"
+#include "boxwood/core/prefetch.h"
 #include "boxwood/scene/parts.h"
 #include "boxwood/scene/triangle_point.h"
 
 namespace boxwood {
-namespace {
-
-void prefetch([[maybe_unused]] const void* address) {
-#if defined(__GNUC__)
-  __builtin_prefetch(address);
-#endif
-}
-
-}  // namespace
 
 #define BOXWOOD_LOOPS "boxwood/scene/surface_block-inl.h"
 #include "boxwood/core/every_cpu-inl.h"

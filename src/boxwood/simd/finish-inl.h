@@ -29,12 +29,45 @@ using DIF = hn::FixedTag<std::int32_t, kFinished>;
 using VF = hn::Vec<DF>;
 using VIF = hn::Vec<DIF>;
 
-/// Some of the hits of a batch, by the ray's number.
-struct HitList {
-  static constexpr std::size_t kSize = 64;
-  std::uint32_t count = 0;
-  HWY_ALIGN std::uint32_t ray_index[kSize + 1];
-};
+/// Calls finish(numbers, count) with the rays that hit, kFinished at a time; of the last only `count` are
+/// wanted. block_of(i, mask) says where the block lies that ray i hit, and is safe to ask of a miss, with a
+/// mask of 0.
+template <class IsHit, class BlockOf, class Finish>
+HWY_INLINE void finish_listed(std::size_t ray_count, const IsHit& is_hit, const BlockOf& block_of,
+                              const Finish& finish) {
+  constexpr std::size_t kSize = 64;
+  HWY_ALIGN std::uint32_t list[kSize + kFinished];
+  std::size_t count = 0;
+  const auto finish_list = [&] {
+    // Whole vectors: what is missing in the last one is its last hit once more.
+    if (count % kFinished != 0) std::fill_n(list + count, kFinished - count % kFinished, list[count - 1]);
+    for (std::size_t n = 0; n < count; n += kFinished) finish(list + n, std::min(kFinished, count - n));
+    count = 0;
+  };
+  for (std::size_t i = 0; i < ray_count; ++i) {
+    // Without a branch: who hits is hard to foresee.
+    const std::uint32_t hits = is_hit(i);
+    const char* block = block_of(i, 0u - hits);
+    for (int line = 0; line < 3; ++line) __builtin_prefetch(block + 64 * line);
+    list[count] = static_cast<std::uint32_t>(i);
+    count += hits;
+    if (count == kSize) finish_list();
+  }
+  finish_list();
+}
+
+/// What the scalar test says of a triangle that is hit.
+inline Crossing cross(const RayShear& shear, const Triangle& triangle) {
+  Crossing crossing;
+  intersect_triangle(shear, triangle.a, triangle.b, triangle.c, crossing);
+  return crossing;
+}
+
+/// Whether weights with this sum are as the scalar test has them; where it would take its exact branch, ask it.
+inline bool is_plain(float sum) {
+  const float size = std::fabs(sum);
+  return size > 0x1p-80f && size < 0x1p120f;
+}
 
 /// Three coordinates of each lane in the order of the triangle test, when the longest axis is y or z.
 HWY_INLINE void turn_axes(VF (&v)[3], hn::Mask<DF> is_y, hn::Mask<DF> is_z) {
@@ -113,6 +146,31 @@ HWY_INLINE void find_normals(const VF (&v)[3][3], VF (&normal)[3]) {
 }
 #endif
 
+/// Writes `count` of the hits that have been worked out; asks cross_exactly(i) for weights that need it.
+template <class Found, class Cross>
+HWY_INLINE void write_group(const Weights& weights, const VF (&normal)[3], const Found* found,
+                            const std::uint32_t* ray_index, std::size_t count, Hit* hits,
+                            const Cross& cross_exactly) {
+  const DF d;
+  HWY_ALIGN float us[kFinished], vs[kFinished], sums[kFinished], normals[3][kFinished];
+  hn::Store(weights.u, d, us);
+  hn::Store(weights.v, d, vs);
+  hn::Store(weights.sum, d, sums);
+  for (int k = 0; k < 3; ++k) hn::Store(normal[k], d, normals[k]);
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint32_t i = ray_index[n];
+    Hit& hit = hits[i];
+    hit.t = found[i].t;
+    hit.u = us[n];
+    hit.v = vs[n];
+    hit.normal = {normals[0][n], normals[1][n], normals[2][n]};
+    if (HWY_LIKELY(is_plain(sums[n]))) continue;
+    const Crossing crossing = cross_exactly(i);
+    hit.u = crossing.u;
+    hit.v = crossing.v;
+  }
+}
+
 /// Fetches the vertices of kFinished hits, found[ray_index[i]].
 template <class Layout>
 struct VertexFetch;
@@ -175,56 +233,23 @@ HWY_INLINE void finish_group(const TriangleTree& tree, const Ray* rays, const Tr
   find_normals(v, normal);
   const Weights weights = weigh(v, origin, direction);
 
-  HWY_ALIGN float us[kFinished], vs[kFinished], sums[kFinished], normals[3][kFinished];
-  hn::Store(weights.u, d, us);
-  hn::Store(weights.v, d, vs);
-  hn::Store(weights.sum, d, sums);
-  for (int k = 0; k < 3; ++k) hn::Store(normal[k], d, normals[k]);
-  for (std::size_t n = 0; n < count; ++n) {
-    const std::uint32_t i = ray_index[n];
-    Hit& hit = hits[i];
-    hit.t = found[i].t;
-    hit.u = us[n];
-    hit.v = vs[n];
-    hit.normal = {normals[0][n], normals[1][n], normals[2][n]};
-
-    // Weights that the scalar test would take through its exact branch go there.
-    const float size = std::fabs(sums[n]);
-    if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) continue;
-    const Triangle triangle = tree.triangle(found[i].block, found[i].lane);
-    Crossing crossing;
-    intersect_triangle(RayShear(rays[i].origin, rays[i].direction), triangle.a, triangle.b, triangle.c,
-                       crossing);
-    hit.u = crossing.u;
-    hit.v = crossing.v;
-  }
-}
-
-template <class Layout>
-void finish_list(HitList& list, const TriangleTree& tree, const Ray* rays, const TriangleHit* found,
-                 Hit* hits) {
-  // Whole vectors: what is missing in the last one is its last hit once more.
-  for (std::size_t n = list.count; n % kFinished != 0; ++n)
-    list.ray_index[n] = list.ray_index[list.count - 1];
-  for (std::size_t n = 0; n < list.count; n += kFinished)
-    finish_group<Layout>(tree, rays, found, list.ray_index + n, std::min(kFinished, list.count - n), hits);
-  list.count = 0;
+  write_group(weights, normal, found, ray_index, count, hits, [&](std::uint32_t i) {
+    return cross(RayShear(rays[i].origin, rays[i].direction),
+                 tree.triangle(found[i].block, found[i].lane));
+  });
 }
 
 template <class Layout>
 void finish_all(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found, Hit* hits) {
-  HitList list;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Without a branch: who hits is hard to foresee.
-    const std::uint32_t is_hit = found[i].is_hit();
-    const char* block = tree.pool() + std::size_t(found[i].block & (0u - is_hit)) * TriangleTree::kUnit;
-    for (int line = 0; line < 3; ++line) __builtin_prefetch(block + 64 * line);
-    hits[i] = Hit{};
-    list.ray_index[list.count] = static_cast<std::uint32_t>(i);
-    list.count += is_hit;
-    if (list.count == HitList::kSize) finish_list<Layout>(list, tree, rays.data(), found, hits);
-  }
-  finish_list<Layout>(list, tree, rays.data(), found, hits);
+  std::fill_n(hits, rays.size(), Hit{});
+  finish_listed(
+      rays.size(), [&](std::size_t i) { return found[i].is_hit(); },
+      [&](std::size_t i, std::uint32_t mask) {
+        return tree.pool() + std::size_t(found[i].block & mask) * TriangleTree::kUnit;
+      },
+      [&](const std::uint32_t* ray_index, std::size_t count) {
+        finish_group<Layout>(tree, rays.data(), found, ray_index, count, hits);
+      });
 }
 
 /// The first three lanes, each from a vector of its own.
@@ -283,11 +308,8 @@ HWY_INLINE void finish_one(const TriangleTree& tree, const KernelRay& ray, const
   hit.u = wb * inverse_sum + 0.0f;
   hit.v = wc * inverse_sum + 0.0f;
   hit.normal = normal_of(block, lane, found.lane);
-  const float size = std::fabs(sum);
-  if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) return;
-  const Triangle triangle = block.triangle(found.lane);
-  Crossing crossing;
-  intersect_triangle(ray.shear_constants(), triangle.a, triangle.b, triangle.c, crossing);
+  if (HWY_LIKELY(is_plain(sum))) return;
+  const Crossing crossing = cross(ray.shear_constants(), block.triangle(found.lane));
   hit.u = crossing.u;
   hit.v = crossing.v;
 }

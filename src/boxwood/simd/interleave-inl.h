@@ -37,6 +37,9 @@ struct alignas(64) RayInFlight {
   std::uint32_t ray_index;
   std::int32_t refs[kShortStack];
   std::int32_t keys[kShortStack];
+
+  const KernelRay& leaf_ray() const { return ray; }
+  float leaf_limit() const { return hit.t; }
 };
 
 /// A block whose planes are still to be tested, and then what the test says.
@@ -48,6 +51,34 @@ struct OpenBlock {
   std::uint32_t lanes;
   alignas(16) float ts[kBlockWidth];
 };
+
+/// Tests the leaves that the rays of a list stand before, and calls take(open) with the blocks of which some
+/// lanes are crossed. There is room for `open` blocks of all rays, and one more.
+template <class Layout, class RayState, class PoolOf, class Take>
+HWY_INLINE void visit_leaves(RayState* const* begin, RayState* const* end, OpenBlock<RayState>* open,
+                             const PoolOf& pool_of, const Take& take) {
+  // The edges first, and without a branch on what they say.
+  OpenBlock<RayState>* last = open;
+  for (RayState* const* i = begin; i != end; ++i) {
+    RayState* ray = *i;
+    const auto ref = static_cast<std::uint32_t>(*ray->top);
+    const char* block = blocks_at(pool_of(*ray), ref);
+    for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
+      last->ray = ray;
+      last->block = block;
+      last->crossed = test_edges(Layout::block(block), ray->leaf_ray()).crossed;
+      last += last->crossed.maybe != 0;
+    }
+  }
+
+  // The planes of what is left.
+  for (OpenBlock<RayState>* o = open; o != last; ++o)
+    o->lanes = test_planes(Layout::block(o->block), o->ray->leaf_ray(), o->crossed, o->ray->leaf_limit(), o->ts);
+
+  // Only then what follows from it, which is hard to foresee.
+  for (OpenBlock<RayState>* o = open; o != last; ++o)
+    if (o->lanes != 0) take(*o);
+}
 
 /// Keeps of a part of a stack, whose keys lie kStack behind, what may still matter up to `limit`; returns its
 /// end.
@@ -97,7 +128,9 @@ class Interleaved {
       if (nodes.end - lists_[kNode] > kFewNodes) continue;
 
       // Enough rays stand before a leaf: test, take it off the stack, and see where each goes next.
-      visit_leaves(leaves.end);
+      visit_leaves<Layout>(
+          lists_[kLeaf], leaves.end, open_, [pool](const RayInFlight&) { return pool; },
+          [this](const OpenBlock<RayInFlight>& open) { take(open); });
       i = lists_[kLeaf], end = leaves.end;
       leaves.end = lists_[kLeaf];
       for (; i != end; ++i) {
@@ -174,37 +207,14 @@ class Interleaved {
     return top + count - 1;
   }
 
-  /// Tests the leaves that rays stand before.
-  HWY_INLINE void visit_leaves(RayInFlight** end) {
-    // The edges first, and without a branch on what they say.
-    OpenBlock<RayInFlight>* open = open_;
-    for (RayInFlight** i = lists_[kLeaf]; i != end; ++i) {
-      RayInFlight* ray = *i;
-      const auto ref = static_cast<std::uint32_t>(*ray->top);
-      const char* block = blocks_at(pool_, ref);
-      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
-        open->ray = ray;
-        open->block = block;
-        open->crossed = test_edges(Layout::block(block), ray->ray).crossed;
-        open += open->crossed.maybe != 0;
-      }
-    }
-
-    // The planes of what is left.
-    for (OpenBlock<RayInFlight>* o = open_; o != open; ++o)
-      o->lanes = test_planes(Layout::block(o->block), o->ray->ray, o->crossed, o->ray->hit.t, o->ts);
-
-    // Only then what follows from it, which is hard to foresee.
-    for (OpenBlock<RayInFlight>* o = open_; o != open; ++o) {
-      if (o->lanes == 0) continue;
-      RayInFlight& ray = *o->ray;
-      if constexpr (kAny) {
-        ray.hit.block = 0;
-        ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
-      } else {
-        if (take_closest(Layout::block(o->block), units(pool_, o->block), o->lanes, o->ts, ray.hit))
-          ray.top = cull<kShortStack>(ray.refs + 1, ray.top, ray.hit.t);
-      }
+  HWY_INLINE void take(const OpenBlock<RayInFlight>& open) {
+    RayInFlight& ray = *open.ray;
+    if constexpr (kAny) {
+      ray.hit.block = 0;
+      ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
+    } else {
+      if (take_closest(Layout::block(open.block), units(pool_, open.block), open.lanes, open.ts, ray.hit))
+        ray.top = cull<kShortStack>(ray.refs + 1, ray.top, ray.hit.t);
     }
   }
 

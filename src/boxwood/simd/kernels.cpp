@@ -106,8 +106,7 @@ struct KernelsFor {
     KernelRay world;
     if (!prepare(ray, bounds, BoxTree::kSlack, world)) return false;
     PlacedWalk<Layout> walk(trees, ray, world, hit);
-    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
-    if (walk.is_unusual) return false;
+    if (!walk.run()) return false;
     hit = walk.hit;
     if (hit.is_placed()) finish_one_placed<Layout>(trees, walk, full);
     return true;
@@ -117,8 +116,7 @@ struct KernelsFor {
     KernelRay world;
     if (!prepare(ray, bounds, BoxTree::kSlack, world)) return false;
     PlacedSearch<Layout> search{trees, ray, world, ray.t_max + 0.0f};
-    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, search.limit, search);
-    if (search.is_unusual) return false;
+    if (!search.run()) return false;
     is_hit = search.is_hit;
     return true;
   }

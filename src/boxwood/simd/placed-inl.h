@@ -91,6 +91,12 @@ struct PlacedWalk {
                         const PlacedHit& hit)
       : trees(trees), ray(ray), world(world), hit(hit) {}
 
+  /// False when the answer is not known.
+  HWY_INLINE bool run() {
+    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, *this);
+    return !is_unusual;
+  }
+
   HWY_INLINE float visit(std::uint32_t item) {
     const PlacedTree& placed = trees.items()[item];
     Moved way;
@@ -110,7 +116,7 @@ struct PlacedWalk {
   }
 };
 
-/// Whether anything below a placement is hit; is_unusual says that it is not known.
+/// Whether anything below a placement is hit.
 template <class Layout>
 struct PlacedSearch {
   const PlacedTrees& trees;
@@ -118,6 +124,12 @@ struct PlacedSearch {
   const KernelRay& world;
   float limit;
   bool is_hit = false, is_unusual = false;
+
+  /// False when the answer is not known.
+  HWY_INLINE bool run() {
+    visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, limit, *this);
+    return !is_unusual;
+  }
 
   HWY_INLINE float visit(std::uint32_t item) {
     const PlacedTree& placed = trees.items()[item];

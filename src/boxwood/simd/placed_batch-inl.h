@@ -43,6 +43,8 @@ struct alignas(64) PlacedRay {
   std::int32_t keys[kPlacedStack];
 
   bool is_in_world() const { return ray == &world; }
+  const KernelRay& leaf_ray() const { return local; }
+  float leaf_limit() const { return limit; }
 };
 
 static_assert(sizeof(PlacedRay) / kLine % 2 == 1);
@@ -73,7 +75,9 @@ class PlacedInterleaved {
       if (ends.of[kNode] - lists_[kNode] > kPlacedFewNodes) continue;
 
       // Enough rays stand before something else. Leaves are tested, taken off the stack, and left.
-      visit_leaves(ends.of[kLeaf]);
+      visit_leaves<Layout>(
+          lists_[kLeaf], ends.of[kLeaf], open_, [](const PlacedRay& ray) { return ray.pools[0]; },
+          [this](const OpenBlock<PlacedRay>& open) { take(open); });
       i = lists_[kLeaf], end = ends.take(lists_, kLeaf);
       for (; i != end; ++i) append(**i, (*i)->top - 1, ends);
 
@@ -176,38 +180,15 @@ class PlacedInterleaved {
     return top + count - 1;
   }
 
-  /// Tests the leaves that rays stand before.
-  HWY_INLINE void visit_leaves(PlacedRay** end) {
-    // The edges first, and without a branch on what they say.
-    OpenBlock<PlacedRay>* open = open_;
-    for (PlacedRay** i = lists_[kLeaf]; i != end; ++i) {
-      PlacedRay* ray = *i;
-      const auto ref = static_cast<std::uint32_t>(*ray->top);
-      const char* block = blocks_at(ray->pools[0], ref);
-      for (std::uint32_t left = ref >> 2 & 3; left > 0; --left, block += Layout::kBlockBytes) {
-        open->ray = ray;
-        open->block = block;
-        open->crossed = test_edges(Layout::block(block), ray->local).crossed;
-        open += open->crossed.maybe != 0;
-      }
-    }
-
-    // The planes of what is left.
-    for (OpenBlock<PlacedRay>* o = open_; o != open; ++o)
-      o->lanes = test_planes(Layout::block(o->block), o->ray->local, o->crossed, o->ray->limit, o->ts);
-
-    // Only then what follows from it, which is hard to foresee.
-    for (OpenBlock<PlacedRay>* o = open_; o != open; ++o) {
-      if (o->lanes == 0) continue;
-      PlacedRay& ray = *o->ray;
-      const TriangleBlock& block = Layout::block(o->block);
-      if (!take_closest(block, units(ray.pools[0], o->block), o->lanes, o->ts, ray.hit, ray.way)) continue;
-      if constexpr (kAny) {
-        ray.top = ray.bottom + 1;  // nothing else matters: the bottom is next
-      } else {
-        ray.limit = ray.way.limit(ray.hit.t);
-        ray.top = cull<kPlacedStack>(ray.bottom + 1, ray.top, ray.limit);
-      }
+  HWY_INLINE void take(const OpenBlock<PlacedRay>& open) {
+    PlacedRay& ray = *open.ray;
+    const TriangleBlock& block = Layout::block(open.block);
+    if (!take_closest(block, units(ray.pools[0], open.block), open.lanes, open.ts, ray.hit, ray.way)) return;
+    if constexpr (kAny) {
+      ray.top = ray.bottom + 1;  // nothing else matters: the bottom is next
+    } else {
+      ray.limit = ray.way.limit(ray.hit.t);
+      ray.top = cull<kPlacedStack>(ray.bottom + 1, ray.top, ray.limit);
     }
   }
 
@@ -296,22 +277,20 @@ void trace_placed(const PlacedTrees& trees, const Box3& bounds, const Ray* rays,
       continue;
     }
     PlacedHit hit = output.before(i);
-    bool is_unusual = false;
+    bool is_known;
     if constexpr (kAny) {
       PlacedSearch<Layout> search{trees, rays[i], world, hit.t};
-      visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, search);
+      is_known = search.run();
       if (search.is_hit) hit.item = 0;
-      is_unusual = search.is_unusual;
     } else {
       PlacedWalk<Layout> walk(trees, rays[i], world, hit);
-      visit_boxes_one(trees.boxes().pool(), trees.boxes().first(), world, hit.t, walk);
+      is_known = walk.run();
       hit = walk.hit;
-      is_unusual = walk.is_unusual;
     }
-    if (is_unusual)
-      unusual.push_back(i);
-    else
+    if (is_known)
       output(i, hit);
+    else
+      unusual.push_back(i);
   }
 }
 

@@ -74,61 +74,28 @@ HWY_INLINE void finish_placed_group(const PlacedTrees& trees, const Ray* rays, c
   };
   const VF moved[3] = {dot_of(map[0], normal), dot_of(map[1], normal), dot_of(map[2], normal)};
   const VF size_of_normal = hn::Sqrt(dot_of(moved, moved));
+  for (int k = 0; k < 3; ++k) normal[k] = hn::Div(moved[k], size_of_normal);
 
-  HWY_ALIGN float us[kFinished], vs[kFinished], sums[kFinished], normals[3][kFinished];
-  hn::Store(weights.u, d, us);
-  hn::Store(weights.v, d, vs);
-  hn::Store(weights.sum, d, sums);
-  for (int k = 0; k < 3; ++k) hn::Store(hn::Div(moved[k], size_of_normal), d, normals[k]);
-  for (std::size_t n = 0; n < count; ++n) {
-    const std::uint32_t i = ray_index[n];
-    Hit& hit = hits[i];
-    hit.t = found[i].t;
-    hit.u = us[n];
-    hit.v = vs[n];
-    hit.normal = {normals[0][n], normals[1][n], normals[2][n]};
-
-    // Weights that the scalar test would take through its exact branch go there.
-    const float size = std::fabs(sums[n]);
-    if (HWY_LIKELY(size > 0x1p-80f && size < 0x1p120f)) continue;
+  write_group(weights, normal, found, ray_index, count, hits, [&](std::uint32_t i) {
     const PlacedTree& placed = items[found[i].item];
-    const Triangle triangle = placed.tree->triangle(found[i].block, found[i].lane);
     const Affine3& m = placed.object_from_world;
-    Crossing crossing;
-    intersect_triangle(RayShear(m.point(rays[i].origin), m.vector(rays[i].direction)), triangle.a, triangle.b,
-                       triangle.c, crossing);
-    hit.u = crossing.u;
-    hit.v = crossing.v;
-  }
-}
-
-template <class Layout>
-void finish_placed_list(HitList& list, const PlacedTrees& trees, const Ray* rays, const PlacedHit* found,
-                        Hit* hits) {
-  // Whole vectors: what is missing in the last one is its last hit once more.
-  for (std::size_t n = list.count; n % kFinished != 0; ++n)
-    list.ray_index[n] = list.ray_index[list.count - 1];
-  for (std::size_t n = 0; n < list.count; n += kFinished)
-    finish_placed_group<Layout>(trees, rays, found, list.ray_index + n, std::min(kFinished, list.count - n),
-                                hits);
-  list.count = 0;
+    return cross(RayShear(m.point(rays[i].origin), m.vector(rays[i].direction)),
+                 placed.tree->triangle(found[i].block, found[i].lane));
+  });
 }
 
 template <class Layout>
 void finish_all_placed(const PlacedTrees& trees, std::span<const Ray> rays, const PlacedHit* found,
                        Hit* hits) {
-  HitList list;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Without a branch: who hits is hard to foresee.
-    const std::uint32_t is_hit = found[i].is_placed(), mask = 0u - is_hit;
-    const char* block =
-        trees.items()[found[i].item & mask].pool + std::size_t(found[i].block & mask) * TriangleTree::kUnit;
-    for (int line = 0; line < 3; ++line) __builtin_prefetch(block + 64 * line);
-    list.ray_index[list.count] = static_cast<std::uint32_t>(i);
-    list.count += is_hit;
-    if (list.count == HitList::kSize) finish_placed_list<Layout>(list, trees, rays.data(), found, hits);
-  }
-  finish_placed_list<Layout>(list, trees, rays.data(), found, hits);
+  finish_listed(
+      rays.size(), [&](std::size_t i) { return found[i].is_placed(); },
+      [&](std::size_t i, std::uint32_t mask) {
+        return trees.items()[found[i].item & mask].pool +
+               std::size_t(found[i].block & mask) * TriangleTree::kUnit;
+      },
+      [&](const std::uint32_t* ray_index, std::size_t count) {
+        finish_placed_group<Layout>(trees, rays.data(), found, ray_index, count, hits);
+      });
 }
 
 /// Works out one hit, whose ray below the placement and edge functions are still at hand.
