@@ -49,6 +49,12 @@ TEST_P(KernelScenes, CompactScenesAnswerTheSame) {
   }
 }
 
+TEST(KernelScene, TreesOfPartsListEachCrossingOnce) {
+  const Scene scene(gallery::make("soup:40000"), BuildOptions::best());
+  ASSERT_TRUE(scene.parts().world.triangles.has_parts());
+  EXPECT_GT(check_all(scene, mixed_rays(scene.bounds(), 3'000, 5), false), 300u);
+}
+
 TEST(KernelScene, CompactScenesTakeHalfTheMemory) {
   const SceneDesc desc = gallery::make("terrain:128");
   BuildOptions options = BuildOptions::balanced();

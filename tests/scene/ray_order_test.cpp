@@ -1,4 +1,6 @@
 // ray_order_test.cpp: is a large batch that is sorted first answered as any other?
+#include "boxwood/scene/ray_order.h"
+
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -9,7 +11,6 @@
 #include "boxwood/core/random.h"
 #include "boxwood/gallery/gallery.h"
 #include "boxwood/scene/parts.h"
-#include "boxwood/scene/ray_order.h"
 
 namespace boxwood {
 namespace {
@@ -46,7 +47,7 @@ TEST(RayOrder, NamesEachRayOnceAndNeighboursTogether) {
     way += length(rays[ray].origin - rays[before].origin);
   }
   EXPECT_EQ(seen.size(), rays.size());
-  EXPECT_LE(turns, 30u);                  // seven changes of the octant, of up to three signs each
+  EXPECT_LE(turns, 30u);                      // seven changes of the octant, of up to three signs each
   EXPECT_LT(way / double(rays.size()), 0.2);  // in any order 0.66
 }
 
@@ -58,7 +59,8 @@ TEST(RayOrder, KnowsWhatIsScattered) {
   std::vector<Ray> rays = scattered_rays(kCube, 70'000);
   for (Ray& ray : rays) ray.origin = {0.5f, 0.5f, 2};
   EXPECT_FALSE(detail::are_scattered(rays, kCube));
-  for (std::size_t i = 0; i < rays.size(); ++i) rays[i].origin = {float(i % 256) / 256, 0.5f, float(i) / 7e4f};
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    rays[i].origin = {float(i % 256) / 256, 0.5f, float(i) / 7e4f};
   EXPECT_FALSE(detail::are_scattered(rays, kCube));
 }
 

@@ -93,7 +93,8 @@ inline std::vector<Ray> mixed_rays(const Box3& bounds, std::size_t count, std::u
 /// Single rays against a search without trees, where `expect_oracle`; batches of many sizes, lists and counts
 /// against single rays. Returns how many rays hit.
 inline std::size_t check_all(const Scene& scene, const std::vector<Ray>& rays, bool expect_oracle) {
-  std::vector<Hit> single(rays.size()), all;
+  std::vector<Hit> single(rays.size()), all, all_of_each;
+  std::vector<std::size_t> begin_of_each = {0};
   std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     single[i] = scene.closest_hit(rays[i]);
@@ -102,6 +103,8 @@ inline std::size_t check_all(const Scene& scene, const std::vector<Ray>& rays, b
     scene.all_hits(rays[i], all);
     EXPECT_EQ(scene.count_hits(rays[i]), all.size()) << "ray " << i;
     EXPECT_EQ(all.empty() ? Hit{} : all[0], single[i]) << "ray " << i;
+    all_of_each.insert(all_of_each.end(), all.begin(), all.end());
+    begin_of_each.push_back(all_of_each.size());
     TraversalStatistics statistics;
     EXPECT_EQ(scene.closest_hit(rays[i], statistics), single[i]) << "ray " << i;
     if (expect_oracle) {
@@ -116,6 +119,17 @@ inline std::size_t check_all(const Scene& scene, const std::vector<Ray>& rays, b
   }
 
   const auto two = make_executor(2);
+  for (Executor* executor : {&serial_executor(), two.get()}) {
+    std::vector<std::size_t> begins = {9}, counts(rays.size());
+    scene.all_hits(rays, begins, all, executor);
+    scene.count_hits(rays, counts, executor);
+    EXPECT_EQ(begins, begin_of_each);
+    EXPECT_EQ(all, all_of_each);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      EXPECT_EQ(counts[i], begin_of_each[i + 1] - begin_of_each[i]) << "ray " << i;
+    if (testing::Test::HasFailure()) return hits;
+  }
+
   std::vector<Hit> batch(rays.size());
   const std::unique_ptr<bool[]> is_hit(new bool[rays.size()]);
   for (const std::size_t size :

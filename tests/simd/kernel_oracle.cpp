@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -168,10 +169,37 @@ std::vector<bool> expect_batch_equals_single(const Kernels& kernels, const Trian
   return handed_back;
 }
 
+/// Crossings in one order, of two copies of a triangle that in the first block.
+bool comes_first(const TriangleHit& a, const TriangleHit& b) {
+  return std::tie(a.t, a.key, a.block, a.lane) < std::tie(b.t, b.key, b.block, b.lane);
+}
+
+/// What all_hits_of says of each ray. It appends, and hands back the rays of `handed_back` alone.
+std::vector<std::vector<TriangleHit>> all_of_batch(const Kernels& kernels, const TriangleTree& tree,
+                                                   std::span<const Ray> rays, const Box3& bounds,
+                                                   const std::vector<bool>& handed_back) {
+  std::vector<simd::RayCrossing> found = {{kUntouched, 7}};
+  std::vector<std::uint32_t> unusual = {123}, expected_unusual = {123};
+  kernels.all_hits_of(tree, rays, bounds, found, unusual);
+  for (std::uint32_t i = 0; i < rays.size(); ++i)
+    if (handed_back[i]) expected_unusual.push_back(i);
+  EXPECT_TRUE(unusual.front() == 123 && same_hit(found[0].hit, kUntouched) && found[0].ray_index == 7)
+      << kernels.name;
+  std::sort(unusual.begin() + 1, unusual.end());
+  EXPECT_EQ(unusual, expected_unusual) << kernels.name;
+
+  std::vector<std::vector<TriangleHit>> of_ray(rays.size());
+  for (std::size_t k = 1; k < found.size(); ++k) of_ray.at(found[k].ray_index).push_back(found[k].hit);
+  for (std::vector<TriangleHit>& hits : of_ray) std::sort(hits.begin(), hits.end(), comes_first);
+  return of_ray;
+}
+
 Checked expect_equal_to(const Kernels& kernels, const TriangleTree& tree, std::span<const Ray> rays,
                         const Box3& bounds, std::span<const Answer> expected, bool has_copies) {
   Complaints complain{std::string(kernels.name)};
   const std::vector<bool> handed_back = expect_batch_equals_single(kernels, tree, rays, bounds);
+  const std::vector<std::vector<TriangleHit>> of_batch =
+      all_of_batch(kernels, tree, rays, bounds, handed_back);
   Checked checked{.rays = rays.size()};
   std::vector<TriangleHit> found;
   std::vector<std::pair<float, std::uint32_t>> crossings;
@@ -185,6 +213,9 @@ Checked expect_equal_to(const Kernels& kernels, const TriangleTree& tree, std::s
       if (found.size() != 1) complain(rays[i], i, "handed back, but all_hits appended something");
       continue;
     }
+    std::sort(found.begin() + 1, found.end(), comes_first);
+    if (!std::equal(found.begin() + 1, found.end(), of_batch[i].begin(), of_batch[i].end(), same_hit))
+      complain(rays[i], i, "all_hits_of differs from all_hits");
 
     TriangleHit hit;
     kernels.closest_hit(tree, rays[i], bounds, hit);

@@ -22,12 +22,6 @@ namespace {
 
 using detail::kMaxChunk;
 
-void check_lengths(std::size_t rays, std::size_t hits) {
-  if (rays != hits)
-    throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " +
-                                std::to_string(hits) + " hits, expected the same number");
-}
-
 /// A thread's memory between kernels and the answers.
 struct Buffers {
   std::vector<simd::TriangleHit> found;
@@ -133,6 +127,12 @@ void finish(const Scene::Parts& parts, std::span<const Ray> rays, Scratch& scrat
 
 namespace detail {
 
+void check_lengths(std::size_t rays, std::size_t answers, const char* what) {
+  if (rays != answers)
+    throw std::invalid_argument("a batch of " + std::to_string(rays) + " rays came with room for " +
+                                std::to_string(answers) + " " + what + ", expected the same number");
+}
+
 void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* hits) {
   NoStatistics none;
   if (!parts.kernels) {
@@ -220,7 +220,7 @@ void in_best_order(const Scene::Parts& parts, std::span<const Ray> rays, std::sp
 }  // namespace
 
 void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor) const {
-  check_lengths(rays.size(), hits.size());
+  detail::check_lengths(rays.size(), hits.size(), "hits");
   in_best_order(
       *parts_, rays, hits, executor,
       [&](std::span<const Ray> some, std::span<Hit> answers) {
@@ -234,7 +234,7 @@ void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor
 }
 
 void Scene::any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor) const {
-  check_lengths(rays.size(), hits.size());
+  detail::check_lengths(rays.size(), hits.size(), "hits");
   in_best_order(
       *parts_, rays, hits, executor,
       [&](std::span<const Ray> some, std::span<bool> answers) {

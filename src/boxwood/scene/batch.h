@@ -14,6 +14,9 @@ constexpr std::size_t kMaxChunk = 4096, kMinChunk = 512;
 /// Chunks begin at multiples of this, so that none cuts a tile of a picture, whose rays go the same way.
 constexpr std::size_t kWhole = 64;
 
+/// Throws std::invalid_argument when there is not one answer for each ray.
+void check_lengths(std::size_t rays, std::size_t answers, const char* what);
+
 /// Calls body(begin, end) for chunks of `count` rays: some for each thread, so that all end together; one
 /// thread alone takes the longest, in which the kernels are short of rays least.
 template <class Body>
@@ -33,6 +36,9 @@ void for_chunks(Executor* given, std::size_t count, const Body& body) {
 /// hits[i] answers rays[i]. Precondition: at most kMaxChunk rays.
 void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* hits);
 void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits);
+/// hits[offsets[i]] to hits[offsets[i + 1]] are what rays[i] crosses; counts[i] says how much that is.
+void answer_all(const Scene& scene, std::span<const Ray> rays, std::size_t* offsets, std::vector<Hit>& hits);
+void answer_count(const Scene& scene, std::span<const Ray> rays, std::size_t* counts);
 /// found[i] answers points[i]. Errors as in Scene::closest_point. Precondition: at most kMaxChunk points.
 void answer_closest_points(const Scene::Parts& parts, std::span<const SearchPoint> points, ScenePoint* found);
 

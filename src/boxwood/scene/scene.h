@@ -64,6 +64,12 @@ class Scene {
   /// sorted first, which takes 16 bytes for each of a million rays at a time.
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor = nullptr) const;
   void any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor = nullptr) const;
+  /// What rays[i] crosses is hits[offsets[i]] to hits[offsets[i + 1]], the end not included. Replaces what
+  /// both hold.
+  void all_hits(std::span<const Ray> rays, std::vector<std::size_t>& offsets, std::vector<Hit>& hits,
+                Executor* executor = nullptr) const;
+  void count_hits(std::span<const Ray> rays, std::span<std::size_t> counts,
+                  Executor* executor = nullptr) const;
 
   /// As closest_hit, and adds up the work: boxes and shapes tested by plain C++, one ray at a time.
   Hit closest_hit(const Ray& ray, TraversalStatistics& statistics) const;

@@ -79,28 +79,20 @@ void stream_count_hits(const Scene& scene, const Stream& stream, const FillRays&
                        const Take<Ray, std::size_t>& take) {
   one_for_each<Ray, std::size_t>(stream, fill, take,
                                  [&](std::span<const Ray> rays, std::span<std::size_t> counts) {
-                                   for (std::size_t i = 0; i < rays.size(); ++i)
-                                     counts[i] = scene.count_hits(rays[i]);
+                                   detail::answer_count(scene, rays, counts.data());
                                  });
 }
 
 void stream_all_hits(const Scene& scene, const Stream& stream, const FillRays& fill,
                      const TakeAllHits& take) {
   for_filled_chunks<Ray>(stream, fill, [&](std::size_t begin, std::span<const Ray> rays) {
-    // These grow to what the fullest chunk of the thread needs, once.
-    static thread_local std::vector<Hit> spare_of_ray, spare_of_chunk;
-    std::vector<Hit> of_ray = std::exchange(spare_of_ray, {}), of_chunk = std::exchange(spare_of_chunk, {});
-    of_chunk.clear();
+    // It grows to what the fullest chunk of the thread needs, once.
+    static thread_local std::vector<Hit> spare;
+    std::vector<Hit> hits = std::exchange(spare, {});
     Room<std::size_t> offsets(rays.size() + 1);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      offsets.span()[i] = of_chunk.size();
-      scene.all_hits(rays[i], of_ray);
-      of_chunk.insert(of_chunk.end(), of_ray.begin(), of_ray.end());
-    }
-    offsets.span()[rays.size()] = of_chunk.size();
-    take(begin, rays, offsets.span(), of_chunk);
-    spare_of_ray = std::move(of_ray);
-    spare_of_chunk = std::move(of_chunk);
+    detail::answer_all(scene, rays, offsets.span().data(), hits);
+    take(begin, rays, offsets.span(), hits);
+    spare = std::move(hits);
   });
 }
 

@@ -10,6 +10,8 @@
 #define BOXWOOD_SIMD_BATCH_INL_H
 #endif
 
+#include <numeric>
+
 #include "boxwood/simd/bundle-inl.h"
 #include "boxwood/simd/interleave-inl.h"
 
@@ -28,6 +30,12 @@ inline void write_found(const TriangleHit& hit, bool& found) {
 /// Fetches the line of answers[i] for writing; any line where there are no answers.
 HWY_INLINE void fetch_answer(const Hit* answers, std::size_t i) {
   __builtin_prefetch(reinterpret_cast<const void*>(std::uintptr_t(answers) + i * sizeof(Hit)), 1);
+}
+
+/// A thread's memory for the rays that it has in flight.
+inline RayInFlight* rays_in_flight() {
+  static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
+  return flight.get();
 }
 
 /// found[i] answers rays[i], where the ray is ordinary; `unusual` gets the indices of the others. Found is
@@ -73,9 +81,9 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
     // The rest takes turns.
     const std::span<const std::uint32_t> rest(order, count);
     if (tree.max_stack() + kWidth <= kShortStack) {
-      static thread_local const std::unique_ptr<RayInFlight[]> flight(new RayInFlight[kInFlight]);
-      Interleaved<Layout, kAny, decltype(output)>(tree, bounds, rays.data(), rest, output, unusual)
-          .run(flight.get());
+      Interleaved<Layout, kAny ? Ask::any : Ask::closest, decltype(output)>(tree, bounds, rays.data(), rest,
+                                                                            output, unusual)
+          .run(rays_in_flight());
       continue;
     }
     for (const std::uint32_t i : rest) {
@@ -93,6 +101,42 @@ void trace_batch(const TriangleTree& tree, std::span<const Ray> rays, const Box3
       }
       output(i, hit);
     }
+  }
+}
+
+/// Appends every crossing of the rays that are ordinary to `found`, once for each block that its triangle
+/// stands in; `unusual` gets the indices of the others.
+template <class Layout>
+void trace_all(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
+               std::vector<RayCrossing>& found, std::vector<std::uint32_t>& unusual) {
+  if (tree.max_stack() + kWidth <= kShortStack) {
+    struct Output {
+      std::vector<RayCrossing>& found;
+      void see(std::uint32_t ray_index, const TriangleHit& hit) const { found.push_back({hit, ray_index}); }
+      void operator()(std::uint32_t, const TriangleHit&) const {}
+    } output{found};
+    constexpr std::size_t kAtOnce = 4096;
+    std::uint32_t order[kAtOnce];
+    for (std::size_t begin = 0; begin < rays.size(); begin += kAtOnce) {
+      const std::size_t count = std::min(rays.size() - begin, kAtOnce);
+      std::iota(order, order + count, static_cast<std::uint32_t>(begin));
+      Interleaved<Layout, Ask::all, Output>(tree, bounds, rays.data(), std::span(order, count), output,
+                                            unusual)
+          .run(rays_in_flight());
+    }
+    return;
+  }
+  std::vector<TriangleHit> of_ray;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    KernelRay ray;
+    if (!prepare(rays[i], bounds, tree.box_slack(), ray)) {
+      unusual.push_back(index);
+      continue;
+    }
+    of_ray.clear();
+    all_hits_one<Layout>(tree.pool(), ray, Direct{}, rays[i].t_max + 0.0f, of_ray);
+    for (const TriangleHit& hit : of_ray) found.push_back({hit, index});
   }
 }
 

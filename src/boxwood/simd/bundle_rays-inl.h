@@ -1,8 +1,8 @@
-// bundle_rays-inl.h: what do we know of rays that go the same way, and which of them meet a box, or a triangle?
-// Compiled once for each instruction set.
+// bundle_rays-inl.h: what do we know of rays that go the same way, and which of them meet a box, or a
+// triangle? Compiled once for each instruction set.
 //
-// A lane for each ray. The operations of a lane are those of prepare(), test_edges() and test_planes(), in the
-// same order: the same bits.
+// A lane for each ray. The operations of a lane are those of prepare(), test_edges() and test_planes(), in
+// the same order: the same bits.
 
 #if defined(BOXWOOD_SIMD_BUNDLE_RAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_SIMD_BUNDLE_RAYS_INL_H

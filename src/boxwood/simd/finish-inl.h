@@ -63,7 +63,8 @@ inline Crossing cross(const RayShear& shear, const Triangle& triangle) {
   return crossing;
 }
 
-/// Whether weights with this sum are as the scalar test has them; where it would take its exact branch, ask it.
+/// Whether weights with this sum are as the scalar test has them; where it would take its exact branch, ask
+/// it.
 inline bool is_plain(float sum) {
   const float size = std::fabs(sum);
   return size > 0x1p-80f && size < 0x1p120f;
@@ -234,8 +235,7 @@ HWY_INLINE void finish_group(const TriangleTree& tree, const Ray* rays, const Tr
   const Weights weights = weigh(v, origin, direction);
 
   write_group(weights, normal, found, ray_index, count, hits, [&](std::uint32_t i) {
-    return cross(RayShear(rays[i].origin, rays[i].direction),
-                 tree.triangle(found[i].block, found[i].lane));
+    return cross(RayShear(rays[i].origin, rays[i].direction), tree.triangle(found[i].block, found[i].lane));
   });
 }
 

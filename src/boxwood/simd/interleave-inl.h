@@ -73,7 +73,8 @@ HWY_INLINE void visit_leaves(RayState* const* begin, RayState* const* end, OpenB
 
   // The planes of what is left.
   for (OpenBlock<RayState>* o = open; o != last; ++o)
-    o->lanes = test_planes(Layout::block(o->block), o->ray->leaf_ray(), o->crossed, o->ray->leaf_limit(), o->ts);
+    o->lanes =
+        test_planes(Layout::block(o->block), o->ray->leaf_ray(), o->crossed, o->ray->leaf_limit(), o->ts);
 
   // Only then what follows from it, which is hard to foresee.
   for (OpenBlock<RayState>* o = open; o != last; ++o)
@@ -97,12 +98,17 @@ HWY_INLINE std::int32_t* cull(std::int32_t* to, const std::int32_t* end, float l
   return to;
 }
 
-template <class Layout, bool kAny, class Output>
+/// What is asked about a ray: its closest crossing, whether there is any, or all.
+enum class Ask { closest, any, all };
+
+/// Hands output(ray index, hit) the answer of each ray; where all crossings are asked for, output.see(ray
+/// index, crossing) each of them before.
+template <class Layout, Ask kAsk, class Output>
 class Interleaved {
  public:
   /// Traces rays[i] for each i of `order`.
   Interleaved(const TriangleTree& tree, const Box3& bounds, const Ray* rays,
-              std::span<const std::uint32_t> order, const Output& output, std::vector<std::uint32_t>& unusual)
+              std::span<const std::uint32_t> order, Output& output, std::vector<std::uint32_t>& unusual)
       : pool_(tree.pool()),
         box_slack_(tree.box_slack()),
         bounds_(bounds),
@@ -199,7 +205,7 @@ class Interleaved {
     const Slabs slabs = BoxRay<false>(ray.ray).template cross<Layout>(node, ray.hit.t);
     const std::int32_t* children = children_of<Layout>(node);
     const std::size_t count = hn::CountTrue(di, slabs.enters);
-    if constexpr (kAny) {
+    if constexpr (kAsk != Ask::closest) {
       hn::StoreU(compress(di, hn::Load(di, children), slabs.enters), di, top);
     } else {
       push_children(di, make_keys(slabs.entry), slabs.enters, children, count, top + kShortStack, top);
@@ -209,12 +215,20 @@ class Interleaved {
 
   HWY_INLINE void take(const OpenBlock<RayInFlight>& open) {
     RayInFlight& ray = *open.ray;
-    if constexpr (kAny) {
+    const TriangleBlock& block = Layout::block(open.block);
+    const std::uint32_t at = units(pool_, open.block);
+    if constexpr (kAsk == Ask::any) {
       ray.hit.block = 0;
       ray.top = ray.refs + 1;  // nothing else matters: the bottom is next
-    } else {
-      if (take_closest(Layout::block(open.block), units(pool_, open.block), open.lanes, open.ts, ray.hit))
+    } else if constexpr (kAsk == Ask::closest) {
+      if (take_closest(block, at, open.lanes, open.ts, ray.hit))
         ray.top = cull<kShortStack>(ray.refs + 1, ray.top, ray.hit.t);
+    } else {
+      for (std::uint32_t lanes = open.lanes; lanes; lanes &= lanes - 1) {
+        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
+        if (!is_padding(block.key, static_cast<int>(lane)))
+          output_.see(ray.ray_index, {open.ts[lane], block.key[lane], at, lane});
+      }
     }
   }
 
@@ -223,7 +237,7 @@ class Interleaved {
   const Box3& bounds_;
   const Ray* rays_;
   std::span<const std::uint32_t> order_;
-  const Output& output_;
+  Output& output_;
   std::vector<std::uint32_t>& unusual_;
   std::size_t next_ = 0;
   RayInFlight* lists_[3][kInFlight + 1];

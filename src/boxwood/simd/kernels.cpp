@@ -96,6 +96,11 @@ struct KernelsFor {
     trace_batch<Layout>(tree, rays, bounds, hits, nullptr, unusual);
   }
 
+  static void all_hits_of(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
+                          std::vector<RayCrossing>& found, std::vector<std::uint32_t>& unusual) {
+    trace_all<Layout>(tree, rays, bounds, found, unusual);
+  }
+
   static void finish_hits(const TriangleTree& tree, std::span<const Ray> rays, const TriangleHit* found,
                           Hit* hits) {
     finish_all<Layout>(tree, rays, found, hits);
@@ -203,6 +208,7 @@ const Kernels* table() {
                                   visit_boxes,
                                   Either<Full::closest_hits, Compact::closest_hits>::ask,
                                   Either<Full::any_hits, Compact::any_hits>::ask,
+                                  Either<Full::all_hits_of, Compact::all_hits_of>::ask,
                                   Either<Full::finish_hits, Compact::finish_hits>::ask,
                                   Either<Full::closest_hit_below, Compact::closest_hit_below>::ask,
                                   Either<Full::any_hit_below, Compact::any_hit_below>::ask,

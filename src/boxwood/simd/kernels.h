@@ -27,7 +27,13 @@ struct TriangleHit {
   bool is_hit() const { return block != kNone; }
 };
 
-/// The same below a placement, of which `item` is the number and `instance` the name (PlacedTree). Where
+/// One of the crossings of a batch, and whose it is.
+struct RayCrossing {
+  TriangleHit hit;
+  std::uint32_t ray_index;
+};
+
+/// A TriangleHit below a placement, of which `item` is the number and `instance` the name (PlacedTree). Where
 /// nothing below a placement has been hit, t is the limit, and an equal t counts below `instance` only.
 struct PlacedHit : TriangleHit {
   std::uint32_t item = kNone, instance = kNone;
@@ -65,7 +71,7 @@ using VisitItem = float (*)(void* context, std::uint32_t item);
 /// batches note the ray's index. Preconditions: tree.width() == width, tree.is_ordinary(), and the tree is
 /// not empty. Any number of threads may call. No call allocates, but for what it appends to vectors, and for
 /// the rays that a batch has in flight (40 kB, and 68 kB where it goes below placements; 76 and 117 kB with
-/// sixteen children): once for each thread and question.
+/// sixteen children): once for each thread.
 struct Kernels {
   std::string_view name;  ///< "avx512", "avx2", "sse4", "neon", "wasm".
   int width;              ///< Children of a node in the trees that these kernels walk.
@@ -102,6 +108,10 @@ struct Kernels {
                        TriangleHit* hits, const Hit* answers, std::vector<std::uint32_t>& unusual);
   void (*any_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
                    std::vector<std::uint32_t>& unusual);
+
+  /// As all_hits for many rays: appends every crossing to `found`, in no order.
+  void (*all_hits_of)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
+                      std::vector<RayCrossing>& found, std::vector<std::uint32_t>& unusual);
 
   /// Fills hits[i] with t, u, v and the normal of what closest_hits found for rays[i], or with a miss; ids
   /// are left to the caller.
