@@ -10,40 +10,15 @@
 #include <type_traits>
 
 #include <embree3/rtcore.h>
-#include <pmmintrin.h>
 #include <tbb/global_control.h>
-#include <xmmintrin.h>
 
 #include "boxwood/core/error.h"
-#include "boxwood/simd/kernels.h"
+#include "embree_settings.h"
 
 namespace boxwood::app {
 namespace {
 
 constexpr std::size_t kPacket = 16;
-
-/// Flush-to-zero and denormals-are-zero on this thread, for as long as this lives.
-class DenormalsAreZero {
- public:
-  DenormalsAreZero() : before_(_mm_getcsr()) {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-  }
-  ~DenormalsAreZero() { _mm_setcsr(before_); }
-  DenormalsAreZero(const DenormalsAreZero&) = delete;
-  DenormalsAreZero& operator=(const DenormalsAreZero&) = delete;
-
- private:
-  unsigned before_;
-};
-
-/// Embree is held to the instruction set that BOXWOOD_TARGET holds our kernels to, where it knows it.
-const char* embree_config() {
-  const simd::Kernels* kernels = simd::kernels();
-  if (kernels && kernels->name == "avx2") return "isa=avx2";
-  if (kernels && kernels->name == "sse4") return "isa=sse4.2";
-  return nullptr;
-}
 
 /// A device, and how much memory it holds.
 class Device {

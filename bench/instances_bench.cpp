@@ -1,7 +1,7 @@
 // instances_bench: how fast are scenes of many moved copies, beside Embree's instances?
 //
 //     boxwood_instances [FILE] [--rays N] [--rounds N] [--counts 1,16,400,10000]
-//                       [--sets primary,occlusion,bounce1,random] [--take median|least]
+//                       [--sets primary,occlusion,bounce1,random]
 //
 // One thread; the mesh of FILE, or a bumpy sphere, turned and scaled, many times. Our single rays, our batch
 // and Embree's single rays (quality MEDIUM, denormals flushed) take turns, the median of the rounds counts,
@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <sstream>
@@ -19,13 +18,12 @@
 #include <vector>
 
 #include <embree3/rtcore.h>
-#include <pmmintrin.h>
-#include <xmmintrin.h>
 
 #include "bench_rays.h"
 #include "boxwood/core/random.h"
 #include "boxwood/io/load.h"
 #include "boxwood/scene/scene.h"
+#include "embree_settings.h"
 
 namespace boxwood::bench {
 namespace {
@@ -79,7 +77,7 @@ std::vector<Affine3> places(const TriangleMesh& mesh, std::size_t count) {
 class EmbreeInstances {
  public:
   EmbreeInstances(const TriangleMesh& mesh, const std::vector<Affine3>& placed)
-      : device_(rtcNewDevice(embree_config())), object_(new_scene()), scene_(new_scene()) {
+      : device_(rtcNewDevice(app::embree_config())), object_(new_scene()), scene_(new_scene()) {
     RTCGeometry triangles = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(),
                                0, sizeof(Vec3), mesh.positions.size());
@@ -106,13 +104,6 @@ class EmbreeInstances {
   RTCScene scene() const { return scene_; }
 
  private:
-  /// Embree is held to the instruction set that our kernels are held to.
-  static const char* embree_config() {
-    const char* target = std::getenv("BOXWOOD_TARGET");
-    if (target && std::string(target) == "avx2") return "threads=1,isa=avx2";
-    if (target && std::string(target) == "sse4") return "threads=1,isa=sse4.2";
-    return "threads=1";
-  }
   RTCScene new_scene() const {
     RTCScene scene = rtcNewScene(device_);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
@@ -131,10 +122,9 @@ class EmbreeInstances {
 struct Rate {
   std::vector<double> seconds;
   app::Answers answers;
-  /// The median, or on a busy machine the least.
-  double time(bool is_least) {
+  double median() {
     std::sort(seconds.begin(), seconds.end());
-    return seconds[is_least ? 0 : seconds.size() / 2];
+    return seconds[seconds.size() / 2];
   }
 };
 
@@ -146,7 +136,7 @@ double timed(const std::function<void()>& work) {
 }
 
 void measure(const Scene& scene, const EmbreeInstances& embree, const app::RaySet& set, int rounds,
-             bool is_least, const std::string& label) {
+             const std::string& label) {
   const std::vector<Ray>& rays = set.rays;
   const bool is_any = set.question == app::Question::any_hit;
   Rate single, batch, peer;
@@ -183,19 +173,16 @@ void measure(const Scene& scene, const EmbreeInstances& embree, const app::RaySe
                         r.direction.y, r.direction.z, 0,          r.t_max, ~0u};
       queries[i].hit.geomID = queries[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     }
-    const unsigned mode = _mm_getcsr();
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     peer.seconds.push_back(timed([&] {
+      const app::DenormalsAreZero mode;
       for (RTCRayHit& query : queries)
         if (is_any)
           rtcOccluded1(embree.scene(), &context, &query.ray);
         else
           rtcIntersect1(embree.scene(), &context, &query);
     }));
-    _mm_setcsr(mode);
     peer.answers = {};
     for (const RTCRayHit& query : queries)
       if (is_any ? query.ray.tfar < 0 : query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
@@ -208,8 +195,8 @@ void measure(const Scene& scene, const EmbreeInstances& embree, const app::RaySe
       std::abs(single.answers.checksum - peer.answers.checksum) >
           1e-3 * std::max(single.answers.checksum, peer.answers.checksum))
     throw std::runtime_error(label + ": Embree and we differ");
-  const double count = double(rays.size()) * 1e-6, ours = single.time(is_least),
-               ours_batch = batch.time(is_least), theirs = peer.time(is_least);
+  const double count = double(rays.size()) * 1e-6, ours = single.median(), ours_batch = batch.median(),
+               theirs = peer.median();
   std::printf("| %s | %s | %.2f (%.2f) | %.2f (%.2f) | %.2f | %.0f%% |\n", label.c_str(), set.name.c_str(),
               count / ours, theirs / ours, count / ours_batch, theirs / ours_batch, count / theirs,
               100 * double(single.answers.hits) / double(rays.size()));
@@ -220,7 +207,6 @@ void run(int argc, char** argv) {
   std::string file, counts = "1,16,400,10000", sets = "primary,occlusion,bounce1,random";
   std::size_t ray_count = 1 << 16;
   int rounds = 5;
-  bool is_least = false;
   const auto split = [](const std::string& text) {
     std::vector<std::string> out;
     std::istringstream in(text);
@@ -240,8 +226,6 @@ void run(int argc, char** argv) {
       rounds = std::stoi(argv[i]);
     else if (word == "--counts")
       counts = argv[i];
-    else if (word == "--take")
-      is_least = std::string(argv[i]) == "least";
     else if (word == "--sets")
       sets = argv[i];
     else
@@ -259,7 +243,7 @@ void run(int argc, char** argv) {
     const Scene scene(desc);
     const EmbreeInstances embree(mesh, placed);
     for (const app::RaySet& set : app::make_ray_sets(scene, desc, ray_count, split(sets), serial_executor()))
-      measure(scene, embree, set, rounds, is_least, count);
+      measure(scene, embree, set, rounds, count);
   }
 }
 

@@ -1,8 +1,8 @@
 // all_hits.cpp: what does a ray cross, and what do many?
 //
 // Where a scene has triangles and nothing else, a kernel lists the crossings of a whole chunk of rays in no
-// order. They are dealt to their rays, sorted, freed of what stands in several leaves, and worked out together.
-// Everything else is answered ray by ray.
+// order. They are dealt to their rays, sorted, freed of what stands in several leaves, and worked out
+// together. Everything else is answered ray by ray.
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -227,8 +227,7 @@ void answer_count(const Scene& scene, std::span<const Ray> rays, std::size_t* co
   Scratch crossings;
   if (scene.parts().world.triangles.has_parts()) {
     crossings->find_and_sort(scene.parts(), rays);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      counts[i] = crossings->begins[i + 1] - crossings->begins[i];
+    for (std::size_t i = 0; i < rays.size(); ++i) counts[i] = crossings->begins[i + 1] - crossings->begins[i];
   } else {
     crossings->find(scene.parts(), rays);
     std::fill_n(counts, rays.size(), 0);
@@ -256,9 +255,11 @@ void Scene::all_hits(std::span<const Ray> rays, std::vector<std::size_t>& offset
     detail::answer_all(*this, rays.subspan(begin, end - begin), mine.offsets.data(), mine.hits);
     const std::lock_guard lock(mutex);
     waiting[begin] = std::move(mine);
-    for (auto first = waiting.begin(); first != waiting.end() && first->first == next; first = waiting.begin()) {
+    for (auto first = waiting.begin(); first != waiting.end() && first->first == next;
+         first = waiting.begin()) {
       const Chunk& chunk = first->second;
-      for (std::size_t i = 1; i < chunk.offsets.size(); ++i) offsets[next + i] = hits.size() + chunk.offsets[i];
+      for (std::size_t i = 1; i < chunk.offsets.size(); ++i)
+        offsets[next + i] = hits.size() + chunk.offsets[i];
       hits.insert(hits.end(), chunk.hits.begin(), chunk.hits.end());
       next += chunk.offsets.size() - 1;
       waiting.erase(first);
