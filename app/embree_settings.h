@@ -10,7 +10,8 @@
 
 namespace boxwood::app {
 
-/// Flush-to-zero and denormals-are-zero on this thread, as Embree's manual advises, for as long as this lives.
+/// Flush-to-zero and denormals-are-zero on this thread, as Embree's manual advises, for as long as this
+/// lives.
 class DenormalsAreZero {
  public:
   DenormalsAreZero() : before_(_mm_getcsr()) {

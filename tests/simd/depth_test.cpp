@@ -109,15 +109,10 @@ void expect_room(bool path_is_first) {
     if (kernels->width != W) continue;
     const test::Checked checked = test::expect_equal_to(*kernels, tree, rays, wide.box, answers);
     EXPECT_EQ(checked.hits, rays.size());
-    TriangleHit hit;
-    bool is_hit = false;
     std::vector<TriangleHit> hits;
-    ASSERT_TRUE(kernels->placed_closest_hit(tree, rays[0], wide.box, everything, kInfinity, hit));
-    ASSERT_TRUE(kernels->placed_any_hit(tree, rays[0], wide.box, everything, kInfinity, is_hit));
     ASSERT_TRUE(kernels->placed_all_hits(tree, rays[0], wide.box, everything, kInfinity, hits));
-    EXPECT_EQ(hit.key, deep.triangles.size() - kCrowd / 2);
-    EXPECT_TRUE(is_hit);
-    EXPECT_EQ(hits.size(), 1u);
+    ASSERT_EQ(hits.size(), 1u);
+    EXPECT_EQ(hits[0].key, deep.triangles.size() - kCrowd / 2);
 
     // And when it goes below a placement by itself, where so deep a tree is walked ray by ray also in a
     // batch.

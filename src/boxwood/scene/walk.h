@@ -190,32 +190,23 @@ class PlacementQuery {
   }
 
  private:
-  /// Has the part's triangles answered by a kernel; false when there is none that takes the ray.
+  /// Has a kernel list what the ray crosses of the part's triangles; false when there is none that takes the
+  /// ray. (First hits below placements are found by kernels that walk both levels. Rays that these refuse are
+  /// few, and left to plain C++.)
   bool ask_kernel(const Part& part, const Ray& ray, const UnderPlacement& above) {
     const simd::TriangleTree& tree = part.triangles;
     if (tree.is_empty()) return true;
     const simd::Kernels* kernels = simd::kernels();
-    if (!kernels || !tree.is_ordinary()) return false;
+    if (Sink::kQuestion != Question::all || !kernels || !tree.is_ordinary()) return false;
+    std::vector<simd::TriangleHit> found;
     const simd::Passage passage{above.inside, ray_.t_min};
-    const auto report = [&](const simd::TriangleHit& hit) {
+    if (!kernels->placed_all_hits(tree, ray, part.bounds, passage, sink_.limit(), found)) return false;
+    for (const simd::TriangleHit& hit : found) {
       const Triangle triangle = tree.triangle(hit.block, hit.lane);
       Crossing crossing;
       intersect_triangle(RayShear(ray.origin, ray.direction), triangle.a, triangle.b, triangle.c, crossing);
       crossing.t = hit.t;
       LabelledByKey<UnderPlacement, Sink>{sink_, part, above, hit.key}.report(crossing);
-    };
-    if constexpr (Sink::kQuestion == Question::closest) {
-      simd::TriangleHit hit;
-      if (!kernels->placed_closest_hit(tree, ray, part.bounds, passage, sink_.limit(), hit)) return false;
-      if (hit.is_hit()) report(hit);
-    } else if constexpr (Sink::kQuestion == Question::any) {
-      bool is_hit = false;
-      if (!kernels->placed_any_hit(tree, ray, part.bounds, passage, sink_.limit(), is_hit)) return false;
-      if (is_hit) sink_.report({}, {}, {});
-    } else {
-      std::vector<simd::TriangleHit> found;
-      if (!kernels->placed_all_hits(tree, ray, part.bounds, passage, sink_.limit(), found)) return false;
-      for (const simd::TriangleHit& hit : found) report(hit);
     }
     return true;
   }

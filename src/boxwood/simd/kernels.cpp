@@ -59,25 +59,6 @@ struct KernelsFor {
     return true;
   }
 
-  static bool placed_closest_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
-                                 const Passage& passage, float t_max, TriangleHit& hit) {
-    KernelRay kernel_ray;
-    if (!prepare<true>(ray, bounds, tree.box_slack(), kernel_ray)) return false;
-    hit = {t_max + 0.0f};
-    EdgesOfHit edges;
-    closest_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, hit, edges);
-    if (!hit.is_hit()) hit.t = kInfinity;
-    return true;
-  }
-
-  static bool placed_any_hit(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
-                             const Passage& passage, float t_max, bool& is_hit) {
-    KernelRay kernel_ray;
-    if (!prepare<true>(ray, bounds, tree.box_slack(), kernel_ray)) return false;
-    is_hit = any_hit_one<Layout>(tree.pool(), kernel_ray, Moved{passage}, t_max + 0.0f);
-    return true;
-  }
-
   static bool placed_all_hits(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
                               const Passage& passage, float t_max, std::vector<TriangleHit>& hits) {
     KernelRay kernel_ray;
@@ -202,8 +183,6 @@ const Kernels* table() {
                                   Either<Full::closest_full_hit, Compact::closest_full_hit>::ask,
                                   Either<Full::any_hit, Compact::any_hit>::ask,
                                   Either<Full::all_hits, Compact::all_hits>::ask,
-                                  Either<Full::placed_closest_hit, Compact::placed_closest_hit>::ask,
-                                  Either<Full::placed_any_hit, Compact::placed_any_hit>::ask,
                                   Either<Full::placed_all_hits, Compact::placed_all_hits>::ask,
                                   visit_boxes,
                                   Either<Full::closest_hits, Compact::closest_hits>::ask,

@@ -89,10 +89,6 @@ struct Kernels {
 
   /// The same for a ray in object space, below a placement, whose t_min may be negative or -inf; `bounds` are
   /// those of the object, t_max is the world's, and so are the answers.
-  bool (*placed_closest_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
-                             const Passage& passage, float t_max, TriangleHit& hit);
-  bool (*placed_any_hit)(const TriangleTree& tree, const Ray& ray, const Box3& bounds, const Passage& passage,
-                         float t_max, bool& is_hit);
   bool (*placed_all_hits)(const TriangleTree& tree, const Ray& ray, const Box3& bounds,
                           const Passage& passage, float t_max, std::vector<TriangleHit>& hits);
 
@@ -101,9 +97,9 @@ struct Kernels {
   bool (*visit_boxes)(const BoxTree& tree, const Ray& ray, const Box3& bounds, VisitItem visit,
                       void* context);
 
-  /// As the first three for many rays, on the calling thread: hits[i] answers rays[i]. The indices of rays
-  /// that are not ordinary are appended to `unusual`. Memory at `answers`, where finish_hits will write, is
-  /// fetched ahead as rays end, and left alone; may be null.
+  /// As closest_hit and any_hit for many rays, on the calling thread: hits[i] answers rays[i]. The indices of
+  /// rays that are not ordinary are appended to `unusual`. Memory at `answers`, where finish_hits will write,
+  /// is fetched ahead as rays end, and left alone; may be null.
   void (*closest_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds,
                        TriangleHit* hits, const Hit* answers, std::vector<std::uint32_t>& unusual);
   void (*any_hits)(const TriangleTree& tree, std::span<const Ray> rays, const Box3& bounds, bool* hits,
