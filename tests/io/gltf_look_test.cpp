@@ -101,6 +101,98 @@ TEST_F(Gltf, TexturesOfAllKindsAreReadAsTheyAreMeant) {
   EXPECT_TRUE(desc.textures[m.emission_texture.value].is_srgb);
 }
 
+/// A triangle with three sets of texture coordinates, and a material that uses one picture in three places.
+/// Set n says (n / 4, 0) at every corner.
+class GltfUvSets : public Gltf {
+ protected:
+  GltfUvSets() {
+    Image picture(1, 1);
+    picture.pixels = {0, 1, 0};
+    write_image(path("p.png"), picture);
+    std::string views = R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3})",
+                accessors = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+                                {"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"})";
+    for (int set = 0; set < 3; ++set) {
+      const auto u = static_cast<float>(set) / 4;
+      views += R"(,{"buffer":0,"byteOffset":)" + std::to_string(source.buffer.size()) + R"(,"byteLength":24})";
+      accessors += R"(,{"bufferView":)" + std::to_string(2 + set) +
+                   R"(,"componentType":5126,"count":3,"type":"VEC2"})";
+      append<float>(source.buffer, {u, 0, u, 0, u, 0});
+    }
+    source.parts["bufferViews"] = views + "]";
+    source.parts["accessors"] = accessors + "]";
+    source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2,"TEXCOORD_1":3,
+        "TEXCOORD_2":4},"indices":1,"material":0}]}])";
+    source.parts["images"] = R"([{"uri":"p.png"}])";
+    source.parts["textures"] = R"([{"source":0}])";
+    source.parts["extensionsUsed"] = R"(["KHR_texture_transform","KHR_materials_clearcoat"])";
+  }
+  SceneDesc with_material(const std::string& material) {
+    source.parts["materials"] = "[" + material + "]";
+    return scene(source);
+  }
+  Source source;
+};
+
+TEST_F(GltfUvSets, AreReadWhereATextureLiesInThem) {
+  // All in one: one set is kept, whichever it is.
+  SceneDesc desc = with_material(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0);
+  EXPECT_TRUE(mesh(desc).second_uvs.empty());
+  desc = with_material(R"({"normalTexture":{"index":0,"texCoord":1},"occlusionTexture":{"index":0}})");
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0.25f);
+  EXPECT_TRUE(mesh(desc).second_uvs.empty());
+  EXPECT_FALSE(desc.textures.at(0).is_by_second_uvs);
+  EXPECT_TRUE(desc.warnings.empty());
+
+  // In two, the base color's is the first.
+  desc = with_material(R"({"emissiveFactor":[1,1,1],"emissiveTexture":{"index":0},
+      "pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":2}}})");
+  EXPECT_TRUE(desc.warnings.empty());
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0.5f);
+  EXPECT_EQ(mesh(desc).second_uvs.at(2).x, 0);
+  EXPECT_EQ(mesh(desc).second_uvs.at(2).y, 1);  // v points up here
+  const Material& m = desc.materials[0];
+  EXPECT_FALSE(desc.textures[m.color_texture.value].is_by_second_uvs);
+  EXPECT_TRUE(desc.textures[m.emission_texture.value].is_by_second_uvs);
+}
+
+TEST_F(GltfUvSets, ATransformMayNameAnotherSet) {
+  const SceneDesc desc = with_material(R"({"normalTexture":{"index":0},
+      "pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0,"texCoord":2,
+      "extensions":{"KHR_texture_transform":{"texCoord":1}}}}})");
+  EXPECT_TRUE(desc.warnings.empty());
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0.25f);
+  EXPECT_EQ(mesh(desc).second_uvs.at(0).x, 0);
+}
+
+TEST_F(GltfUvSets, WhatIsTooMuchOrMissingIsNamedOnce) {
+  const std::string three = R"({"normalTexture":{"index":0,"texCoord":1},
+      "emissiveFactor":[1,1,1],"emissiveTexture":{"index":0,"texCoord":2},
+      "pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0,"texCoord":2}}})";
+  SceneDesc desc = with_material(three);
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "material 0: more than two sets of texture coordinates");
+
+  desc = with_material(R"({"normalTexture":{"index":0,"texCoord":5},
+      "pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "there is no TEXCOORD_5");
+}
+
+TEST_F(GltfUvSets, CoatsHaveNormalMapsOfTheirOwn) {
+  const SceneDesc desc = with_material(R"({"normalTexture":{"index":0},
+      "extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1,
+      "clearcoatNormalTexture":{"index":0,"texCoord":1,"scale":0.5}}}})");
+  EXPECT_TRUE(desc.warnings.empty());
+  const Material& m = desc.materials[0];
+  ASSERT_TRUE(m.coat_normal_texture.is_valid());
+  EXPECT_TRUE(desc.textures[m.coat_normal_texture.value].is_by_second_uvs);
+  EXPECT_FALSE(desc.textures[m.coat_normal_texture.value].is_srgb);
+  EXPECT_FLOAT_EQ(m.coat_normal_scale, .5f);
+  EXPECT_EQ(m.normal_scale, 1);
+}
+
 TEST_F(Gltf, PicturesAreDecodedOnceAndMissingOnesAreWarnings) {
   // A picture of one green pixel, in a buffer view and in a data URI.
   Image green(1, 1);

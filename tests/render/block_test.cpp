@@ -162,7 +162,7 @@ TEST(Block, PlainSurfacesScatterAsABsdfDoes) {
       const Vec3 bent = normalize(surfaces[i].normal + random.direction() * 0.5f * float(i % 3));
       const Vec3 normal = dot(bent, surfaces[i].normal) > 0 ? bent : surfaces[i].normal;
       const Vec3 outgoing = random.direction();
-      looks[i] = look_at(SceneDesc{}, materials[k], prepared[k], {0, 0});
+      looks[i] = look_at(SceneDesc{}, materials[k], prepared[k], TexturePoint(Surface{}));
       bsdfs.emplace_back(looks[i], surfaces[i], normal, outgoing);
       block.set(i, prepared[k], looks[i].color, surfaces[i].normal, normal, outgoing);
       towards.set(i, random.direction());

@@ -69,12 +69,22 @@ std::optional<Geometry> read_primitive(const File& file, std::size_t mesh_index,
     mesh.normals = read_vec3(file, normals, where + ", NORMAL");
     check_length(mesh.normals.size(), "NORMAL");
   }
-  const std::string uv_name = "TEXCOORD_" + std::to_string(base_color_uv_set(file, primitive.material));
-  if (const int uvs = attribute(primitive, uv_name); uvs != -1) {
-    mesh.uvs = read_vec2(file, uvs, where + ", " + uv_name);
-    check_length(mesh.uvs.size(), uv_name);
-    for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;  // v points down in glTF, up here
-  }
+  const auto read_uvs = [&](int set) {
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    const int accessor = attribute(primitive, name);
+    if (accessor == -1) return std::vector<Vec2>();
+    std::vector<Vec2> uvs = read_vec2(file, accessor, where + ", " + name);
+    check_length(uvs.size(), name);
+    for (Vec2& uv : uvs) uv.y = 1 - uv.y;  // v points down in glTF, up here
+    return uvs;
+  };
+  const UvSets sets = uv_sets(file, primitive.material);
+  mesh.uvs = read_uvs(sets.first);
+  if (sets.second) mesh.second_uvs = read_uvs(*sets.second);
+  if (sets.second && mesh.second_uvs.empty())
+    warn(warnings, file, where,
+         "there is no TEXCOORD_" + std::to_string(*sets.second) +
+             ", which the material asks for; the material's first set stands in");
 
   // The order of the vertices: as given, or one after the other.
   std::vector<std::uint32_t> indices;

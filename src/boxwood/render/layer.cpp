@@ -50,7 +50,7 @@ std::optional<Seen> first_seen(const Scene& scene, Ray ray, Hit hit) {
     const Surface surface = surface_at(scene, ray, hit);
     const Material& material = material_of(desc, surface.material);
     const bool is_seen = !is_see_through(material) || (material.kind != Material::Kind::clear &&
-                                                       opacity_at(desc, material, surface.uv) >= 0.5f);
+                                                       opacity_at(desc, material, TexturePoint(surface)) >= 0.5f);
     if (is_seen) return Seen{surface, hit.instance_id, before + hit.t};
     before += hit.t;
     ray = surface.spawn(ray.direction);
@@ -118,7 +118,7 @@ void Features::look(std::span<const Ray> rays, std::span<float> values, std::spa
       else if (!seen)
         put({0, 0, 0});
       else if (layer == Layer::albedo)
-        put(base_color(desc, material_of(desc, seen->surface.material), seen->surface.uv));
+        put(base_color(desc, material_of(desc, seen->surface.material), TexturePoint(seen->surface)));
       else
         put(layer == Layer::normal ? seen->surface.shading_normal : seen->surface.position);
     }

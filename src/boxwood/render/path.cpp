@@ -259,7 +259,7 @@ class PathTracer final : public Integrator {
     path.cone_width += path.cone_angle * hit.t;
 
     MaterialId id = step.surfaces.material[i];
-    const Vec2 uv = step.surfaces.uv[i];
+    TexturePoint point{step.surfaces.uv[i], step.surfaces.second_uv[i]};
     const PreparedMaterial* prepared = &this->prepared(id);
     if (prepared->is_emissive) gather_emission(work, place, ray.direction, hit, step.surfaces[i]);
     if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) {
@@ -269,12 +269,12 @@ class PathTracer final : public Integrator {
 
     // Which material it is, where it is several; and whether the light meets it at all.
     if (prepared->is_mix) {
-      id = choose_material(desc, id, uv, path.sampler.next_1d());
+      id = choose_material(desc, id, point, path.sampler.next_1d());
       prepared = &this->prepared(id);
     }
     const Material& material = material_of(desc, id);
     if (prepared->is_see_through) {
-      const float opacity = opacity_at(desc, material, uv);
+      const float opacity = opacity_at(desc, material, point);
       if (opacity < 1 && (opacity <= 0 || !(path.sampler.next_1d() < opacity))) {
         const Surface surface = step.surfaces[i];
         enter(path, material, surface.normal, ray.direction);
@@ -290,12 +290,17 @@ class PathTracer final : public Integrator {
     step.paths.throughput.set(i, path.throughput);
     step.is_in_medium[i] = max_component(path.absorption) > 0;
     step.paths.in_roulette[i] = path.bounce >= kRouletteAfter;
-    const float uv_width = prepared->has_color_texture ? path.cone_width * step.surfaces.uv_density[i] : 0.0f;
-    const Vec3 normal = prepared->has_normal_texture ? mapped_normal(scene_, hit, step.surfaces[i], material)
+    if (prepared->has_color_texture) {
+      point.width = path.cone_width * step.surfaces.uv_density[i];
+      point.second_width = path.cone_width * step.surfaces.second_uv_density[i];
+    }
+    const Vec3 normal = prepared->has_normal_texture ? mapped_normal(scene_, hit, step.surfaces[i],
+                                                                     material.normal_texture,
+                                                                     material.normal_scale)
                                                      : step.surfaces.shading_normal[i];
     const Vec3 outgoing = -ray.direction;
     const Vec3 color = !prepared->is_plain           ? Vec3{0, 0, 0}
-                       : prepared->has_color_texture ? base_color(desc, material, uv, uv_width)
+                       : prepared->has_color_texture ? base_color(desc, material, point)
                                                      : prepared->color;
     // (A black base has no lobe.)
     if (max_component(color) > 0) {
@@ -305,8 +310,12 @@ class PathTracer final : public Integrator {
       step.paths.is_spread[i] = 1;
       return Kind::plain;
     }
-    step.looks[i] = look_at(desc, material, *prepared, uv, uv_width);
-    const Bsdf& bsdf = step.bsdfs[i].emplace(step.looks[i], step.surfaces[i], normal, outgoing);
+    step.looks[i] = look_at(desc, material, *prepared, point);
+    const Vec3 coat_normal = prepared->has_coat ? mapped_normal(scene_, hit, step.surfaces[i],
+                                                                material.coat_normal_texture,
+                                                                material.coat_normal_scale)
+                                                : normal;
+    const Bsdf& bsdf = step.bsdfs[i].emplace(step.looks[i], step.surfaces[i], normal, outgoing, coat_normal);
     step.receivers.normal.set(i, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
     step.paths.is_spread[i] = bsdf.has_spread();
     return Kind::other;

@@ -10,13 +10,13 @@ namespace boxwood::render {
 namespace {
 
 /// The share of light that goes straight on at a surface; of a mix, the mean of its parts.
-float clear_share(const SceneDesc& desc, MaterialId id, Vec2 uv) {
+float clear_share(const SceneDesc& desc, MaterialId id, const TexturePoint& point) {
   const Material& material = material_of(desc, id);
   if (material.kind != Material::Kind::mix)
-    return is_see_through(material) ? 1 - opacity_at(desc, material, uv) : 0;
-  const float second = mix_share(desc, material, uv);
-  return clear_share(desc, material.first, uv) * (1 - second) +
-         clear_share(desc, material.second, uv) * second;
+    return is_see_through(material) ? 1 - opacity_at(desc, material, point) : 0;
+  const float second = mix_share(desc, material, point);
+  return clear_share(desc, material.first, point) * (1 - second) +
+         clear_share(desc, material.second, point) * second;
 }
 
 constexpr int kMaxSteps = 1024;
@@ -120,7 +120,7 @@ Vec3 Shadows::walk(const Ray& way, const Hit& first_hit, Vec3 absorption, RayCou
     left *= beer(absorption, min(hit.t, ray.t_max) * length(ray.direction));
     if (!hit) return left;
     const Surface surface = surface_at(scene_, ray, hit);
-    const float share = clear_share(desc, surface.material, surface.uv);
+    const float share = clear_share(desc, surface.material, TexturePoint(surface));
     if (!(share > 0) || !(max_component(left) > 0)) return {0, 0, 0};
     left *= share;
 

@@ -111,41 +111,42 @@ Texel picture_at(const Texture& texture, Vec2 uv, float width) {
   return {value.color, value.alpha};
 }
 
-Texel operand_at(const SceneDesc& desc, const Texture::Operand& operand, Vec2 uv, float width) {
+Texel operand_at(const SceneDesc& desc, const Texture::Operand& operand, const TexturePoint& point) {
   if (!operand.texture.is_valid()) return {operand.color, 1};
-  const Texel texel = texture_at(desc, operand.texture, uv, width);
+  const Texel texel = texture_at(desc, operand.texture, point);
   return {operand.color * texel.color, texel.alpha};
 }
 
 }  // namespace
 
-Texel texture_at(const SceneDesc& desc, TextureId id, Vec2 uv, float width) {
+Texel texture_at(const SceneDesc& desc, TextureId id, const TexturePoint& point) {
   const Texture& texture = desc.textures[id.value];
+  const Vec2 uv = texture.is_by_second_uvs ? point.second_uv : point.uv;
   const Vec2 st{texture.u_axis.x * uv.x + texture.v_axis.x * uv.y + texture.offset.x,
                 texture.u_axis.y * uv.x + texture.v_axis.y * uv.y + texture.offset.y};
   if (!std::isfinite(st.x) || !std::isfinite(st.y)) return {{1, 1, 1}, 1};
   const float scale =
       std::sqrt(std::fabs(texture.u_axis.x * texture.v_axis.y - texture.u_axis.y * texture.v_axis.x));
-  const float own_width = width * scale;
+  const float own_width = (texture.is_by_second_uvs ? point.second_width : point.width) * scale;
 
   switch (texture.kind) {
     case Texture::Kind::picture:
       return picture_at(texture, st, own_width);
     case Texture::Kind::product: {
-      const Texel a = operand_at(desc, texture.first, uv, width),
-                  b = operand_at(desc, texture.second, uv, width);
+      const Texel a = operand_at(desc, texture.first, point),
+                  b = operand_at(desc, texture.second, point);
       return {a.color * b.color, a.alpha * b.alpha};
     }
     case Texture::Kind::mix: {
-      const Texel a = operand_at(desc, texture.first, uv, width),
-                  b = operand_at(desc, texture.second, uv, width);
-      const Vec3 share = operand_at(desc, texture.amount, uv, width).color;
+      const Texel a = operand_at(desc, texture.first, point),
+                  b = operand_at(desc, texture.second, point);
+      const Vec3 share = operand_at(desc, texture.amount, point).color;
       return {a.color * (splat(1) - share) + b.color * share, a.alpha * (1 - share.x) + b.alpha * share.x};
     }
     case Texture::Kind::checkerboard: {
       const double sum = std::floor(double(st.x)) + std::floor(double(st.y));
       const bool is_first = sum - 2 * std::floor(sum / 2) == 0;
-      return operand_at(desc, is_first ? texture.first : texture.second, uv, width);
+      return operand_at(desc, is_first ? texture.first : texture.second, point);
     }
   }
   return {{1, 1, 1}, 1};

@@ -48,6 +48,12 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> indices;
   std::vector<Vec3> normals;  ///< Shading normals: empty, or one for each vertex.
   std::vector<Vec2> uvs;      ///< Texture coordinates: empty, or one for each vertex; v points up.
+  std::vector<Vec2> second_uvs = {};  ///< Likewise, for textures that ask for them.
+
+  /// Where a texture lies that asks for the first or the second set; the first where there is no second.
+  const std::vector<Vec2>& uvs_for(bool by_second) const {
+    return by_second && !second_uvs.empty() ? second_uvs : uvs;
+  }
 };
 
 /// Shapes of one kind. `primitive_id` is the position in the vector. AnyShape holds users' own kinds.
@@ -98,6 +104,7 @@ struct Texture {
   /// Texture coordinates from the surface's: (u, v) -> u_axis * u + v_axis * v + offset. For pictures and
   /// checkerboards; operands start from the surface's again.
   Vec2 u_axis{1, 0}, v_axis{0, 1}, offset{0, 0};
+  bool is_by_second_uvs = false;  ///< Pictures and checkerboards: which of the surface's they are.
   std::shared_ptr<const PictureSource> source;  ///< A picture whose pixels stay in its file.
 };
 
@@ -161,6 +168,8 @@ struct Material {
   TextureId specular_color_texture;
   float coat = 0, coat_roughness = 0;  ///< Share of the coat, and its GGX alpha's square root.
   NumberTexture coat_texture, coat_roughness_texture;
+  TextureId coat_normal_texture;  ///< None: the coat is smooth, whatever `normal_texture` does below it.
+  float coat_normal_scale = 1;
   Vec3 sheen_color{0, 0, 0};
   float sheen_roughness = 0;  ///< Its square is the width of the sheen.
   TextureId sheen_color_texture;
@@ -245,7 +254,7 @@ struct SceneDesc {
 template <class AnyMaterial, class Visit>
 void for_each_texture(AnyMaterial& m, const Visit& visit) {
   for (auto* id : {&m.color_texture, &m.emission_texture, &m.transmission_color_texture, &m.normal_texture,
-                   &m.specular_color_texture, &m.sheen_color_texture})
+                   &m.specular_color_texture, &m.sheen_color_texture, &m.coat_normal_texture})
     visit(*id);
   for (auto* number : {&m.roughness_texture, &m.opacity_texture, &m.metalness_texture,
                        &m.transmission_texture, &m.specular_texture, &m.coat_texture,

@@ -29,4 +29,7 @@ inline void place_block(const Corners& __restrict corners, SurfaceBlock& __restr
                                         {b.x - a.x, b.y - a.y}, {c.x - a.x, c.y - a.y});
     out.uv_density[i] = has_uvs ? density : 0.0f;
   }
+  // A mesh with a second set is not for this loop.
+  out.second_uv = out.uv;
+  out.second_uv_density = out.uv_density;
 }

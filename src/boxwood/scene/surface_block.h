@@ -13,13 +13,14 @@ namespace boxwood {
 /// The surfaces of a block, quantity by quantity.
 struct SurfaceBlock {
   Vec3s position, error, normal, shading_normal;
-  Vec2s uv;
+  Vec2s uv, second_uv;
   Floats clearance{};   ///< As Surface::clearance().
   Floats uv_density{};  ///< How much of uv, on a side, a square of the world of side 1 covers; 0: not known.
+  Floats second_uv_density{};
   std::array<MaterialId, kBlock> material;
 
   Surface operator[](int i) const {
-    return {position[i], error[i], normal[i], shading_normal[i], uv[i], material[i]};
+    return {position[i], error[i], normal[i], shading_normal[i], uv[i], second_uv[i], material[i]};
   }
   void set(int i, const Surface& surface);
 };
@@ -56,6 +57,7 @@ class SurfaceReader {
     const Vec3* positions = nullptr;
     const Vec3* normals = nullptr;
     const Vec2* uvs = nullptr;
+    const Vec2* second_uvs = nullptr;
     const MaterialId* materials = nullptr;  ///< One for each triangle; null: all have this one.
     MaterialId material;
     bool is_moved = false;

@@ -17,6 +17,9 @@ inline constexpr float kHalfUlp = 0x1p-24f;
 inline Vec3 blend(Vec3 a, Vec3 b, Vec3 c, float v, float w) {
   return a * (1 - v - w) + b * v + c * w;
 }
+inline Vec2 blend(Vec2 a, Vec2 b, Vec2 c, float v, float w) {
+  return {a.x * (1 - v - w) + b.x * v + c.x * w, a.y * (1 - v - w) + b.y * v + c.y * w};
+}
 
 /// How far from the plane of (a, b, c), near `p`, the watertight test could still report a crossing: its
 /// vertices are moved by up to 7 half units of their distance, and its plane is tilted by the rounding of the
