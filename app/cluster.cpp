@@ -14,6 +14,7 @@ bool is_in_cluster() {
 
 #ifdef BOXWOOD_HAS_MPI
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <thread>
@@ -41,7 +42,7 @@ struct Hello {
 /// What a task brought; the words of its sums follow.
 struct ResultHead {
   Task task;
-  std::uint64_t rays, dropped;
+  render::Effort effort;
 };
 
 template <class T>
@@ -83,8 +84,18 @@ Executor& executor_of(const RenderJob& job) {
   return job.options().executor ? *job.options().executor : default_executor();
 }
 
+/// Calls work(tasks) with a share of them for each thread.
+template <class Work>
+void for_each_share(Executor& executor, std::span<const Task> tasks, const Work& work) {
+  const auto threads = static_cast<std::size_t>(executor.concurrency());
+  const std::size_t share = (tasks.size() + threads - 1) / threads;
+  parallel_for(executor, 0, (tasks.size() + share - 1) / share, 1, [&](std::size_t i) {
+    work(tasks.subspan(i * share, std::min(share, tasks.size() - i * share)));
+  });
+}
+
 std::vector<char> packed(const Task& task, const render::UnitResult& result) {
-  const ResultHead head{task, result.rays, result.dropped};
+  const ResultHead head{task, result.effort};
   std::vector<std::uint32_t> words(result.sums.word_count());
   result.sums.to_words(words);
   std::vector<char> bytes;
@@ -101,7 +112,7 @@ void hand_in(RenderJob& job, const std::vector<char>& bytes) {
   if (head.task.index >= round.unit_count() ||
       round.unit(head.task.unit.tile, head.task.index).first != head.task.unit.first)
     return;
-  render::UnitResult result{job.film().empty_tile(head.task.unit.tile), head.rays, head.dropped};
+  render::UnitResult result{job.film().empty_tile(head.task.unit.tile), head.effort};
   std::vector<std::uint32_t> words(result.sums.word_count());
   std::memcpy(words.data(), bytes.data() + sizeof(head), words.size() * 4);
   result.sums.from_words(words);
@@ -113,8 +124,9 @@ void hand_in(RenderJob& job, const std::vector<char>& bytes) {
 struct Cluster::State {
   /// What the leader knows of another rank.
   struct Helper {
-    int threads = 0;    // 0: it has not said hello, or cannot help
-    int busy_with = 0;  // tasks
+    std::size_t threads = 0;    // 0: it has not said hello, or cannot help
+    std::size_t busy_with = 0;  // tasks,
+    std::size_t sent_last = 0;  // so many of them in the last message
   };
 
   int rank = 0, size = 1;
@@ -140,7 +152,7 @@ struct Cluster::State {
     const std::string difference =
         hello.threads > 0 ? first_difference(render::facts_from(text), facts) : text;
     if (difference.empty())
-      helpers[static_cast<std::size_t>(message.rank)].threads = hello.threads;
+      helpers[static_cast<std::size_t>(message.rank)].threads = static_cast<std::size_t>(hello.threads);
     else
       warn("rank " + std::to_string(message.rank) + " cannot help: " + difference);
   }
@@ -179,6 +191,7 @@ RenderJob::Crew Cluster::crew(const RenderJob& job, std::function<void(const std
   state_->facts = render::facts_of(job);
   state_->warn = std::move(warn);
   return [this](RenderJob& led, std::span<const Task> tasks) {
+    if (tasks.empty()) return;
     // Tasks in order; when all are given out, those again that nobody has brought yet.
     std::size_t next = 0;
     const auto take = [&](std::size_t most) {
@@ -191,25 +204,32 @@ RenderJob::Crew Cluster::crew(const RenderJob& job, std::function<void(const std
     };
 
     Executor& executor = executor_of(led);
+    const auto own_threads = static_cast<std::size_t>(executor.concurrency());
     while (!led.is_stopped()) {
       state_->serve(led);
-      // Each helper has a second task for each thread waiting, so that none waits for us.
+      // How many each thread gets: several as long as many are left, then one by one.
+      const auto share = [&] {
+        std::size_t threads = own_threads;
+        for (const State::Helper& helper : state_->helpers) threads += helper.threads;
+        return render::tasks_at_once(tasks[0], tasks.size() - std::min(next, tasks.size()), threads);
+      };
+      // Each helper has a second message of tasks waiting, so that none waits for us.
       for (int rank = 1; rank < state_->size; ++rank) {
         State::Helper& helper = state_->helpers[static_cast<std::size_t>(rank)];
-        if (helper.busy_with > helper.threads || helper.threads == 0) continue;
+        if (helper.busy_with > helper.sent_last || helper.threads == 0) continue;
         // What others are at already is only for those who have nothing else to do.
         if (next >= tasks.size() && helper.busy_with > 0) continue;
-        const std::vector<Task> taken = take(static_cast<std::size_t>(helper.threads));
+        const std::vector<Task> taken = take(helper.threads * share());
         if (taken.empty()) return;
         std::vector<char> bytes;
         append(bytes, taken.data(), taken.size());
         send(rank, kTasks, bytes);
-        helper.busy_with += static_cast<int>(taken.size());
+        helper.busy_with += taken.size();
+        helper.sent_last = taken.size();
       }
-      const std::vector<Task> own = take(static_cast<std::size_t>(executor.concurrency()));
+      const std::vector<Task> own = take(own_threads * share());
       if (own.empty()) return;
-      parallel_for(executor, 0, own.size(), 1,
-                   [&](std::size_t i) { led.add(own[i], led.render(own[i].unit)); });
+      for_each_share(executor, own, [&](std::span<const Task> some) { led.render_and_add(some); });
     }
   };
 }
@@ -227,8 +247,11 @@ void Cluster::help(const RenderJob& job) {
     std::vector<Task> tasks(message.bytes.size() / sizeof(Task));
     std::memcpy(tasks.data(), message.bytes.data(), tasks.size() * sizeof(Task));
     std::vector<std::vector<char>> results(tasks.size());
-    parallel_for(executor, 0, tasks.size(), 1,
-                 [&](std::size_t i) { results[i] = packed(tasks[i], job.render(tasks[i].unit)); });
+    for_each_share(executor, tasks, [&](std::span<const Task> some) {
+      const std::vector<render::UnitResult> brought = job.render(some);
+      const auto first = static_cast<std::size_t>(some.data() - tasks.data());
+      for (std::size_t i = 0; i < some.size(); ++i) results[first + i] = packed(some[i], brought[i]);
+    });
     for (const std::vector<char>& result : results) send(0, kResult, result);
   }
   send(0, kBye);

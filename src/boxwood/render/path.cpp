@@ -93,22 +93,24 @@ class PathTracer final : public Integrator {
 
   bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, RayCounts& rays) const override {
     bool is_counted = false;
-    sample_many({&ray, 1}, {&sampler, 1}, out, {&is_counted, 1}, rays);
+    sample_many({&ray, 1}, {&sampler, 1}, out, {&is_counted, 1}, {&rays, 1});
     return is_counted;
   }
 
   void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers, std::span<float> out,
-                   std::span<bool> is_counted, RayCounts& rays) const override {
+                   std::span<bool> is_counted, std::span<RayCounts> rays) const override {
     std::fill(out.begin(), out.end(), 0.0f);
     std::fill(is_counted.begin(), is_counted.end(), true);
-    Work work(std::min(camera_rays.size(), kPaths), out);
+    Work work(std::min(camera_rays.size(), kPaths), out, rays);
     PathBatch& batch = work.batch;
     for (std::size_t started = 0;;) {
       // New paths take the places of those that have come to their end: batches stay full.
       const std::size_t old_count = batch.front.size();
-      for (; started < camera_rays.size() && !batch.is_full(); ++started)
+      for (; started < camera_rays.size() && !batch.is_full(); ++started) {
         batch.start(Path(samplers[started], static_cast<std::uint32_t>(started), pixel_angle_),
                     camera_rays[started]);
+        ++rays[started].camera;
+      }
       const std::size_t count = batch.front.size();
       if (count == 0) break;
 
@@ -117,8 +119,6 @@ class PathTracer final : public Integrator {
       const std::span hits = std::span(batch.hits).first(count);
       scene_.closest_hit(front_rays.first(old_count), hits.first(old_count), &serial_executor());
       scene_.closest_hit(front_rays.subspan(old_count), hits.subspan(old_count), &serial_executor());
-      rays.bounce += old_count;
-      rays.camera += count - old_count;
 
       // Let each go on from there, material by material.
       batch.next.clear();
@@ -138,7 +138,8 @@ class PathTracer final : public Integrator {
  private:
   /// The memory of one call.
   struct Work {
-    Work(std::size_t size, std::span<float> samples) : batch(size), order(size), light(size), out(samples) {}
+    Work(std::size_t size, std::span<float> samples, std::span<RayCounts> counts)
+        : batch(size), order(size), light(size), out(samples), rays(counts) {}
     void gather(std::uint32_t sample, Vec3 light) {
       float* sum = &out[3 * std::size_t(sample)];
       sum[0] += light.x;
@@ -146,11 +147,19 @@ class PathTracer final : public Integrator {
       sum[2] += light.z;
     }
 
+    /// A path ends; its first ray came from the camera.
+    void end(std::uint32_t place) {
+      const Path& path = batch[place];
+      rays[path.sample].bounce += path.steps - 1u;
+      batch.end(place);
+    }
+
     PathBatch batch;
     std::vector<std::uint32_t> order;  // in which hits are looked at
     Step step;
     AwaitedLight light;
-    std::span<float> out;  // three floats for each sample
+    std::span<float> out;       // three floats for each sample
+    std::span<RayCounts> rays;  // of each
   };
 
   /// Puts hits in an order in which equal materials follow each other: the processor then foresees branches
@@ -176,10 +185,11 @@ class PathTracer final : public Integrator {
   void escape(Work& work, std::uint32_t position) const {
     const std::uint32_t place = work.batch.front.place(position);
     Path& path = work.batch[place];
+    ++path.steps;
     const Vec3 direction = work.batch.front.rays()[position].direction;
     if (max_component(path.absorption) > 0) path.throughput *= beer(path.absorption, kInfinity);
     work.gather(path.sample, path.throughput * background(direction, path, work.batch.left_from(place)));
-    work.batch.end(place);
+    work.end(place);
   }
 
   /// Up to a block of paths look at what they hit, ask for light, and go on. Those `ahead` come next.
@@ -242,7 +252,7 @@ class PathTracer final : public Integrator {
       work.light.add_careful(path.sample, step.next.light[i], step.lights.shadow_rays[i], path.absorption);
     }
     for (const int i : onward) go_on(batch, step, i);
-    for (const int i : ending) batch.end(step.places[i]);
+    for (const int i : ending) work.end(step.places[i]);
   }
 
   /// Takes a path to what its ray hit, point `i` of the step.
@@ -262,8 +272,9 @@ class PathTracer final : public Integrator {
     TexturePoint point{step.surfaces.uv[i], step.surfaces.second_uv[i]};
     const PreparedMaterial* prepared = &this->prepared(id);
     if (prepared->is_emissive) gather_emission(work, place, ray.direction, hit, step.surfaces[i]);
-    if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) {
-      work.batch.end(place);
+    ++path.steps;
+    if (path.bounce == kMaxBounces || path.steps == kMaxSteps) {
+      work.end(place);
       return Kind::none;
     }
 

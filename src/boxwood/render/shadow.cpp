@@ -80,7 +80,7 @@ void Shadows::find_veiled(const RayBlock& rays, Integers& may_meet_veil) const {
   for (const Box3& veil : veils_) BOXWOOD_BEST(meet_boxes)(veil, reach_, rays, may_meet_veil);
 }
 
-void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& rays) const {
+void Shadows::deliver(AwaitedLight& light, std::span<float> samples, std::span<RayCounts> rays) const {
   const auto add = [&](const AwaitedLight::Light& to, Vec3 transmittance) {
     float* sum = &samples[3 * std::size_t(to.sample)];
     const Vec3 arrived = to.light * transmittance;
@@ -91,21 +91,22 @@ void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& 
   const AwaitedLight::Row &plain = light.plain_, &careful = light.careful_;
   scene_.any_hit(std::span(plain.rays).first(plain.size), {light.is_hidden_.get(), plain.size},
                  &serial_executor());
-  rays.shadow += plain.size;
-  for (std::size_t i = 0; i < plain.size; ++i)
+  for (std::size_t i = 0; i < plain.size; ++i) {
+    ++rays[plain.lights[i].sample].shadow;
     if (!light.is_hidden_[i]) add(plain.lights[i], {1, 1, 1});
+  }
 
   scene_.closest_hit(std::span(careful.rays).first(careful.size), std::span(light.hits_).first(careful.size),
                      &serial_executor());
-  rays.bounce += careful.size;
   for (std::size_t i = 0; i < careful.size; ++i) {
     const Hit& hit = light.hits_[i];
     const Ray& ray = careful.rays[i];
     const AwaitedLight::Light& to = careful.lights[i];
+    ++rays[to.sample].bounce;
     if (!hit)
       add(to, beer(light.absorption_[i], ray.t_max * length(ray.direction)));
     else if (is_veil_[hit.instance_id.value] != 0)
-      add(to, walk(ray, hit, light.absorption_[i], rays));
+      add(to, walk(ray, hit, light.absorption_[i], rays[to.sample]));
   }
 }
 
