@@ -17,6 +17,7 @@ bool is_in_cluster() {
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <list>
 #include <thread>
 
 #define OMPI_SKIP_MPICXX 1
@@ -55,6 +56,37 @@ void send(int rank, Tag tag, const std::vector<char>& bytes = {}) {
   MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD);
 }
 
+/// Messages that leave while the sender goes on; their bytes stay here until they were taken.
+class Outbox {
+ public:
+  void send(int rank, Tag tag, std::vector<char> bytes) {
+    (void)is_empty();
+    Letter& letter = letters_.emplace_back(Letter{std::move(bytes), MPI_REQUEST_NULL});
+    MPI_Isend(letter.bytes.data(), static_cast<int>(letter.bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD,
+              &letter.request);
+  }
+  /// Whether all were taken.
+  bool is_empty() {
+    for (int is_taken = 1; is_taken && !letters_.empty();) {
+      MPI_Test(&letters_.front().request, &is_taken, MPI_STATUS_IGNORE);
+      if (is_taken) letters_.pop_front();
+    }
+    return letters_.empty();
+  }
+
+ private:
+  struct Letter {
+    std::vector<char> bytes;
+    MPI_Request request;
+  };
+  std::list<Letter> letters_;  // none of them may move
+};
+
+/// Leaves the processor to others for a moment, as what waits inside of MPI would not.
+void pause() {
+  std::this_thread::sleep_for(std::chrono::microseconds(200));
+}
+
 struct Message {
   int rank, tag;
   std::vector<char> bytes;
@@ -73,10 +105,10 @@ bool receive(Message& message) {
   return true;
 }
 
-/// The same, but waits for one, and leaves the processor to others meanwhile, as MPI_Probe would not.
+/// The same, but waits for one.
 Message wait_for_message() {
   Message message;
-  while (!receive(message)) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  while (!receive(message)) pause();
   return message;
 }
 
@@ -243,6 +275,8 @@ void Cluster::help(const RenderJob& job) {
   append(greeting, facts.data(), facts.size());
   send(0, kHello, greeting);
 
+  // Results wait for a leader who renders, too, while we go on with the tasks that are here already.
+  Outbox outbox;
   for (Message message = wait_for_message(); message.tag != kQuit; message = wait_for_message()) {
     std::vector<Task> tasks(message.bytes.size() / sizeof(Task));
     std::memcpy(tasks.data(), message.bytes.data(), tasks.size() * sizeof(Task));
@@ -252,8 +286,9 @@ void Cluster::help(const RenderJob& job) {
       const auto first = static_cast<std::size_t>(some.data() - tasks.data());
       for (std::size_t i = 0; i < some.size(); ++i) results[first + i] = packed(some[i], brought[i]);
     });
-    for (const std::vector<char>& result : results) send(0, kResult, result);
+    for (std::vector<char>& result : results) outbox.send(0, kResult, std::move(result));
   }
+  while (!outbox.is_empty()) pause();
   send(0, kBye);
 }
 
