@@ -172,9 +172,9 @@ double chi_square_limit(int degrees) {
   return k * std::pow(1 - 2 / (9 * k) + z * std::sqrt(2 / (9 * k)), 3);
 }
 
-/// In cells of equal solid angle over the whole sphere: how often sample() comes there, and the integral of the
-/// density that evaluate() states. What sample() gives up, or draws from perfect lobes, is a cell too: so the
-/// density integrates to what it should.
+/// In cells of equal solid angle over the whole sphere: how often sample() comes there, and the integral of
+/// the density that evaluate() states. What sample() gives up, or draws from perfect lobes, is a cell too: so
+/// the density integrates to what it should.
 void expect_samples_follow_density(const Bsdf& bsdf, const std::string& name) {
   constexpr int kRings = 8, kSectors = 8, kCount = 100000, kSteps = 48;
   std::vector<double> found(kRings * kSectors + 1), expected(kRings * kSectors + 1);
@@ -240,8 +240,8 @@ TEST(Bsdf, ACoatMayHaveANormalOfItsOwn) {
   for (const float tilt : {0.2f, 0.6f, -0.4f})
     for (const float roughness : {0.0f, 0.5f, 0.8f})
       for (const float transmission : {0.0f, 0.5f}) {
-        const std::string name = std::to_string(tilt) + " " + std::to_string(roughness) + " " +
-                                 std::to_string(transmission);
+        const std::string name =
+            std::to_string(tilt) + " " + std::to_string(roughness) + " " + std::to_string(transmission);
         Material coated = layered(0.2f, transmission, 0.5f);
         coated.coat = 0.7f;
         coated.coat_roughness = roughness;
@@ -262,7 +262,8 @@ TEST(Bsdf, ACoatMayHaveANormalOfItsOwn) {
           }
           const BsdfValue value = probe.bsdf.evaluate(sample->direction);
           EXPECT_NEAR(value.pdf / sample->pdf, 1, 1e-3f) << name;
-          EXPECT_NEAR(length(value.value - sample->weight * sample->pdf) / length(value.value), 0, 1e-3f) << name;
+          EXPECT_NEAR(length(value.value - sample->weight * sample->pdf) / length(value.value), 0, 1e-3f)
+              << name;
         }
       }
 }

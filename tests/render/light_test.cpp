@@ -207,7 +207,8 @@ TEST(Path, LampsWithPicturesMayLieInTheSecondCoordinates) {
           Material shining = lamp(1);
           shining.emission_texture = desc.add(half);
           TriangleMesh mesh{{{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
-          const std::vector<Vec2> lies{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, turned{{1, 0}, {0, 0}, {0, 1}, {1, 1}};
+          const std::vector<Vec2> lies{{0, 0}, {1, 0}, {1, 1}, {0, 1}},
+              turned{{1, 0}, {0, 0}, {0, 1}, {1, 1}};
           mesh.uvs = is_swapped ? turned : lies;
           mesh.second_uvs = is_swapped ? lies : turned;
           desc.add(std::move(mesh), desc.add(shining));

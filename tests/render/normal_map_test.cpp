@@ -58,8 +58,8 @@ TEST(NormalMap, BendsAlongThePicturesOwnDirections) {
   expect_direction(mapped(map), {-1, 0, 1});
 }
 
-/// What is seen of a black square under a smooth coat, from above. The coat reflects 4% of a lamp of radiance 1,
-/// where it lies so that the light comes this way. The map bends by half of its slopes.
+/// What is seen of a black square under a smooth coat, from above. The coat reflects 4% of a lamp of radiance
+/// 1, where it lies so that the light comes this way. The map bends by half of its slopes.
 float seen_of_coat(const Material& black, Vec3 lamp_at) {
   SceneDesc desc;
   const TextureId map = desc.add(toward_u());

@@ -84,6 +84,20 @@ TEST(Texture, LiesWhereItsAxesSay) {
   EXPECT_EQ(texture_color(texture, {0.25f, 0.25f}), (Vec3{1, 1, 1}));  // at (0.75, 0.25)
 }
 
+TEST(Texture, PixelsThatAreNotMixedAreSquares) {
+  Texture texture = four_colors();
+  texture.is_mixed = false;
+  EXPECT_EQ(texture_color(texture, {0.01f, 0.99f}), (Vec3{1, 0, 0}));
+  EXPECT_EQ(texture_color(texture, {0.49f, 0.51f}), (Vec3{1, 0, 0}));
+  EXPECT_EQ(texture_color(texture, {0.51f, 0.51f}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(texture_color(texture, {0.49f, 0.49f}), (Vec3{0, 0, 1}));
+  EXPECT_EQ(texture_color(texture, {1.49f, -0.01f}), (Vec3{1, 0, 0}));  // goes on again
+  texture.wrap_u = texture.wrap_v = Texture::Wrap::clamp;
+  EXPECT_EQ(texture_color(texture, {7, -7}), (Vec3{1, 1, 1}));
+  texture.is_mixed = true;
+  EXPECT_EQ(texture_color(texture, {0.5f, 0.75f}), (Vec3{0.5f, 0.5f, 0}));
+}
+
 TEST(Texture, LiesInTheSetOfCoordinatesThatItAsksFor) {
   SceneDesc desc;
   Texture texture = four_colors();
@@ -131,8 +145,7 @@ TEST(Texture, ProductsMixesAndCheckerboards) {
   EXPECT_EQ(color_at(desc, checks_id, {0.2f, 0.2f}), color_at(desc, picture, {0.2f, 0.2f}));
   EXPECT_EQ(color_at(desc, checks_id, {0.3f, 0.2f}), (Vec3{0, 0, 0}));
   EXPECT_EQ(color_at(desc, checks_id, {-0.1f, 0.1f}), (Vec3{0, 0, 0}));
-  EXPECT_EQ(color_at(desc, checks_id, {-0.1f, -0.1f}),
-            color_at(desc, picture, {-0.1f, -0.1f}));
+  EXPECT_EQ(color_at(desc, checks_id, {-0.1f, -0.1f}), color_at(desc, picture, {-0.1f, -0.1f}));
 }
 
 /// A picture of levels that are each of one grey: 1, 1/2, 1/4.

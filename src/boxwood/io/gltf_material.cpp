@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include <tiny_gltf.h>
@@ -168,14 +169,15 @@ class MaterialMaker {
   MaterialMaker(const File& file, Executor& executor, SceneDesc& desc)
       : file_(file), desc_(desc), pictures_(read_pictures(file, executor, desc.warnings)) {}
 
-  Material make(const tinygltf::Material& source, const std::string& where) {
+  /// `is_colored`: vertices have colors where it is used.
+  Material make(const tinygltf::Material& source, const std::string& where, bool is_colored) {
     uv_sets_ = uv_sets_of(source);
     where_ = where;
     Material m;
     m.name = source.name;
     m.kind = Material::Kind::layered;
     m.roughness_scale = Material::RoughnessScale::square_root_of_alpha;
-    take_base(source, m);
+    take_base(source, m, is_colored);
     take_emission(source, m);
     take_layers(source.extensions, m);
     take_inside(source.extensions, m);
@@ -186,13 +188,14 @@ class MaterialMaker {
   using Channel = NumberTexture::Channel;
 
   /// Base color, metalness, roughness, opacity and normals: what every material has.
-  void take_base(const tinygltf::Material& source, Material& m) {
+  void take_base(const tinygltf::Material& source, Material& m, bool is_colored) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     m.color = color_of(pbr.baseColorFactor, {1, 1, 1});
     if (const TextureUse use = use_of(pbr.baseColorTexture); use.texture >= 0) {
       m.color_texture = texture_id(use, true);
       if (!m.color_texture.is_valid()) m.color *= 0.5f;
     }
+    if (is_colored) m.color_texture = times_vertex_colors(m.color_texture);
     m.metalness = clamp01(pbr.metallicFactor);
     m.roughness = clamp01(pbr.roughnessFactor);
     const TextureId rough_metal = texture_id(use_of(pbr.metallicRoughnessTexture), false);
@@ -232,8 +235,7 @@ class MaterialMaker {
     m.coat_roughness = clamp01(number(coat, "clearcoatRoughnessFactor", 0));
     m.coat_roughness_texture = {texture_id(use_of(coat, "clearcoatRoughnessTexture"), false), Channel::green};
     m.coat_normal_texture = texture_id(use_of(coat, "clearcoatNormalTexture"), false);
-    m.coat_normal_scale =
-        static_cast<float>(number(member(coat, "clearcoatNormalTexture"), "scale", 1));
+    m.coat_normal_scale = static_cast<float>(number(member(coat, "clearcoatNormalTexture"), "scale", 1));
 
     const tinygltf::Value* sheen = extension(extensions, "KHR_materials_sheen");
     m.sheen_color = color(sheen, "sheenColorFactor", {0, 0, 0});
@@ -288,11 +290,13 @@ class MaterialMaker {
     if (sampler >= 0 && std::size_t(sampler) < file_.model->samplers.size()) {
       placed.wrap_u = wrap_of(file_.model->samplers[sampler].wrapS);
       placed.wrap_v = wrap_of(file_.model->samplers[sampler].wrapT);
+      placed.is_mixed = file_.model->samplers[sampler].magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST;
     }
     move_by(use.transform, placed);
-    const auto [entry, is_new] = ids_.try_emplace({image, is_color, placed.is_by_second_uvs, int(placed.wrap_u), int(placed.wrap_v),
-                                                   placed.u_axis.x, placed.u_axis.y, placed.v_axis.x,
-                                                   placed.v_axis.y, placed.offset.x, placed.offset.y});
+    const auto [entry, is_new] =
+        ids_.try_emplace({image, is_color, placed.is_by_second_uvs, placed.is_mixed, int(placed.wrap_u),
+                          int(placed.wrap_v), placed.u_axis.x, placed.u_axis.y, placed.v_axis.x,
+                          placed.v_axis.y, placed.offset.x, placed.offset.y});
     if (!is_new) return entry->second;
     placed.name = picture->name;
     placed.width = picture->width;
@@ -301,6 +305,22 @@ class MaterialMaker {
     placed.source = picture->source;
     placed.is_srgb = is_color && picture->is_srgb;  // numbers never are
     return entry->second = desc_.add(std::move(placed));
+  }
+
+  TextureId times_vertex_colors(TextureId picture) {
+    if (!vertex_colors_.is_valid()) {
+      Texture colors;
+      colors.kind = Texture::Kind::vertex_color;
+      colors.name = "colors of vertices";
+      vertex_colors_ = desc_.add(std::move(colors));
+    }
+    if (!picture.is_valid()) return vertex_colors_;
+    Texture product;
+    product.kind = Texture::Kind::product;
+    product.name = desc_.textures[picture.value].name;
+    product.first.texture = picture;
+    product.second.texture = vertex_colors_;
+    return desc_.add(std::move(product));
   }
 
   /// KHR_texture_transform: scale, turn, then move, in coordinates whose v points down; ours points up.
@@ -317,7 +337,9 @@ class MaterialMaker {
   const File& file_;
   SceneDesc& desc_;
   std::map<int, Texture> pictures_;
-  std::map<std::tuple<int, bool, bool, int, int, float, float, float, float, float, float>, TextureId> ids_;
+  std::map<std::tuple<int, bool, bool, bool, int, int, float, float, float, float, float, float>, TextureId>
+      ids_;
+  TextureId vertex_colors_;
   UvSets uv_sets_;     // of the material that is being made
   std::string where_;  // its place, for messages
 };
@@ -327,8 +349,18 @@ class MaterialMaker {
 void add_materials(const File& file, Executor& executor, SceneDesc& desc) {
   MaterialMaker maker(file, executor, desc);
   const auto& materials = file.model->materials;
+  constexpr int kNone = -1;
+  std::set<int> used, colored;
+  for (const tinygltf::Mesh& mesh : file.model->meshes)
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      const int id = std::max(primitive.material, kNone);
+      used.insert(id);
+      if (primitive.attributes.count("COLOR_0") != 0) colored.insert(id);
+    }
   for (std::size_t i = 0; i < materials.size(); ++i)
-    desc.add(maker.make(materials[i], "material " + std::to_string(i)));
+    desc.add(
+        maker.make(materials[i], "material " + std::to_string(i), colored.count(static_cast<int>(i)) != 0));
+  if (used.count(kNone) != 0) desc.add(maker.make({}, "no material", colored.count(kNone) != 0));
 }
 
 UvSets uv_sets(const File& file, int material) {

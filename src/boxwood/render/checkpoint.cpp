@@ -170,8 +170,7 @@ void read_checkpoint(RenderJob& job, std::string_view bytes) {
   if (reader.value<std::uint64_t>() != expected || !reader.is_at_end())
     throw std::runtime_error("the checkpoint is damaged");
 
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
-    job.film().set(tile, std::move(tiles[tile]));
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) job.film().set(tile, std::move(tiles[tile]));
   job.restore(state);
 }
 

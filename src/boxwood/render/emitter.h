@@ -60,10 +60,10 @@ class EmitterGroup {
     float radius = 0;  // sphere, object space
     Vec3 normal;       // triangle and disk; the front
     Vec3 radiance;
-    float area = 0;           // world space; of a squeezed sphere only roughly
-    float mean_radiance = 0;  // brightness
-    float clearance = 0;      // of all but spheres
-    TextureId texture;          // of the radiance; triangles of meshes only
+    float area = 0;              // world space; of a squeezed sphere only roughly
+    float mean_radiance = 0;     // brightness
+    float clearance = 0;         // of all but spheres
+    TextureId texture;           // of the radiance; triangles of meshes only
     std::uint32_t triangle = 0;  // of the mesh
   };
 

@@ -17,7 +17,9 @@ Vec3 clamp01(Vec3 color) {
 /// Numbers are looked up at the point, however wide a square is looked at.
 float number_at(const SceneDesc& desc, const NumberTexture& number, const TexturePoint& point) {
   if (!number.texture.is_valid()) return 1;
-  const Texel texel = texture_at(desc, number.texture, {point.uv, point.second_uv});
+  TexturePoint sharp = point;
+  sharp.width = sharp.second_width = 0;
+  const Texel texel = texture_at(desc, number.texture, sharp);
   switch (number.channel) {
     case NumberTexture::Channel::red:
       return texel.color.x;

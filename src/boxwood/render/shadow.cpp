@@ -121,7 +121,7 @@ Vec3 Shadows::walk(const Ray& way, const Hit& first_hit, Vec3 absorption, RayCou
     left *= beer(absorption, min(hit.t, ray.t_max) * length(ray.direction));
     if (!hit) return left;
     const Surface surface = surface_at(scene_, ray, hit);
-    const float share = clear_share(desc, surface.material, TexturePoint(surface));
+    const float share = clear_share(desc, surface.material, TexturePoint(scene_, hit, surface));
     if (!(share > 0) || !(max_component(left) > 0)) return {0, 0, 0};
     left *= share;
 

@@ -8,15 +8,19 @@
 
 namespace boxwood::render {
 
-/// A point of a surface as textures see it: in both sets of texture coordinates, and how wide a square of
-/// each is looked at; 0: a point.
+/// A point of a surface as textures see it: in both sets of texture coordinates, how wide a square of each is
+/// looked at (0: a point), and the color of the mesh there.
 struct TexturePoint {
   TexturePoint(Vec2 uv, Vec2 second_uv, float width = 0, float second_width = 0)
       : uv(uv), second_uv(second_uv), width(width), second_width(second_width) {}
   explicit TexturePoint(const Surface& surface) : TexturePoint(surface.uv, surface.second_uv) {}
+  TexturePoint(const Scene& scene, const Hit& hit, const Surface& surface) : TexturePoint(surface) {
+    color = vertex_color(scene, hit);
+  }
 
   Vec2 uv, second_uv;
   float width, second_width;
+  std::array<float, 4> color{1, 1, 1, 1};
 };
 
 struct Texel {

@@ -26,10 +26,8 @@ std::optional<Edges> edges_at(const Scene& scene, const Hit& hit, const Texture&
     return Vec2{texture.u_axis.x * u + texture.v_axis.x * v, texture.u_axis.y * u + texture.v_axis.y * v};
   };
   Edges e{world_from_object.vector(mesh->positions[j] - mesh->positions[i]),
-          world_from_object.vector(mesh->positions[k] - mesh->positions[i]),
-          placed(b.x - a.x, b.y - a.y),
-          placed(c.x - a.x, c.y - a.y),
-          0};
+          world_from_object.vector(mesh->positions[k] - mesh->positions[i]), placed(b.x - a.x, b.y - a.y),
+          placed(c.x - a.x, c.y - a.y), 0};
   e.uv_area = e.first_uv.x * e.second_uv.y - e.first_uv.y * e.second_uv.x;
   return e;
 }

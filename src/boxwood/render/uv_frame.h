@@ -16,8 +16,8 @@ struct UvFrame {
 /// coordinates, or they are all the same there.
 std::optional<UvFrame> uv_frame(const Scene& scene, const Hit& hit, const Texture& texture);
 
-/// The normal that a normal map gives the surface, its slopes times `scale`; the shading normal where there is
-/// no map.
+/// The normal that a normal map gives the surface, its slopes times `scale`; the shading normal where there
+/// is no map.
 Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, TextureId map, float scale);
 
 }  // namespace boxwood::render

@@ -46,9 +46,11 @@ class PictureSource {
 struct TriangleMesh {
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> indices;
-  std::vector<Vec3> normals;  ///< Shading normals: empty, or one for each vertex.
-  std::vector<Vec2> uvs;      ///< Texture coordinates: empty, or one for each vertex; v points up.
+  std::vector<Vec3> normals;          ///< Shading normals: empty, or one for each vertex.
+  std::vector<Vec2> uvs;              ///< Texture coordinates: empty, or one for each vertex; v points up.
   std::vector<Vec2> second_uvs = {};  ///< Likewise, for textures that ask for them.
+  std::vector<std::array<float, 4>> colors =
+      {};  ///< Linear light and alpha, for textures of that kind: likewise.
 
   /// Where a texture lies that asks for the first or the second set; the first where there is no second.
   const std::vector<Vec2>& uvs_for(bool by_second) const {
@@ -74,14 +76,15 @@ struct Instance {
   MaterialId material;  ///< Wins over the geometry's own when given.
 };
 
-/// What lies at a point of a surface: a picture's pixels, or a pattern made of other textures. A color is
-/// followed by its alpha, which is 1 for all but pictures that have one.
+/// What lies at a point of a surface: a picture's pixels, the colors of a mesh's vertices, or a pattern made
+/// of other textures. A color is followed by its alpha, which is 1 where nothing says else.
 struct Texture {
   enum class Kind {
     picture,       ///< `texels`, or `source` where there is one.
     product,       ///< first * second.
     mix,           ///< first * (1 - amount) + second * amount.
     checkerboard,  ///< first and second in turns, a unit of u and v each.
+    vertex_color,  ///< The mesh's own; white where it has none, and on lamps.
   };
   enum class Wrap { repeat, mirror, clamp, black };
 
@@ -100,6 +103,7 @@ struct Texture {
   Kind kind = Kind::picture;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;  ///< Beyond [0, 1].
   bool is_inverted = false;                           ///< 1 - color.
+  bool is_mixed = true;  ///< Between the pixels of a picture; else each is a square of one color.
   Operand first, second, amount;
   /// Texture coordinates from the surface's: (u, v) -> u_axis * u + v_axis * v + offset. For pictures and
   /// checkerboards; operands start from the surface's again.
@@ -188,6 +192,9 @@ struct Camera {
   float lens_radius = 0;      ///< 0: pinhole.
   float focus_distance = 1;   ///< Along -z, in world units; used when lens_radius > 0.
   int width = 0, height = 0;  ///< The picture's size that the file asks for; 0: no wish.
+  /// Above 0: all rays are parallel, and the shorter side of the picture spans so much of the world. Then
+  /// there is neither an angle nor a lens.
+  float orthographic_size = 0;
 };
 
 /// Light from infinitely far away, by direction: a picture of longitudes and latitudes, all around. Its top

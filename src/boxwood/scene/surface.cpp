@@ -29,9 +29,9 @@ LocalSurface on_mesh(const TriangleMesh& mesh, const Hit& hit) {
   LocalSurface s = on_triangle(triangle_of(mesh, hit.primitive_id), hit.u, hit.v);
   const auto& [i, j, k] = mesh.indices[hit.primitive_id.value];
   if (!mesh.uvs.empty()) s.uv = blend(mesh.uvs[i], mesh.uvs[j], mesh.uvs[k], hit.u, hit.v);
-  s.second_uv = mesh.second_uvs.empty() ? s.uv
-                                        : blend(mesh.second_uvs[i], mesh.second_uvs[j], mesh.second_uvs[k],
-                                                hit.u, hit.v);
+  s.second_uv = mesh.second_uvs.empty()
+                    ? s.uv
+                    : blend(mesh.second_uvs[i], mesh.second_uvs[j], mesh.second_uvs[k], hit.u, hit.v);
   if (!mesh.normals.empty()) {
     const Vec3 n = blend(mesh.normals[i], mesh.normals[j], mesh.normals[k], hit.u, hit.v);
     if (length_squared(n) > 0 && is_finite(n)) s.shading_normal = normalize(n);
@@ -159,6 +159,14 @@ float Surface::clearance() const {
 Ray Surface::spawn(Vec3 direction, float t_max) const {
   const Vec3 side = dot(normal, direction) < 0 ? -normal : normal;
   return {position + side * clearance(), 0, direction, t_max};
+}
+
+std::array<float, 4> vertex_color(const Scene& scene, const Hit& hit) {
+  const Scene::Parts& parts = scene.parts();
+  const auto* mesh = std::get_if<TriangleMesh>(&parts.desc.geometries[hit.geometry_id.value].shapes);
+  if (mesh == nullptr || mesh->colors.empty()) return {1, 1, 1, 1};
+  const auto& [i, j, k] = mesh->indices[hit.primitive_id.value];
+  return blend(mesh->colors[i], mesh->colors[j], mesh->colors[k], hit.u, hit.v);
 }
 
 float uv_density(const Scene& scene, const Hit& hit, bool of_second) {

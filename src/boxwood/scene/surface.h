@@ -27,6 +27,9 @@ struct Surface {
 /// Works out the place of `hit`, which `scene` returned for `ray`. Precondition: hit.is_hit().
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
 
+/// The color and alpha of the mesh's vertices there; white where it has none.
+std::array<float, 4> vertex_color(const Scene& scene, const Hit& hit);
+
 /// How much of uv, on a side, a square of the world of side 1 covers there; 0 where it is not known. Of the
 /// first set or the second.
 float uv_density(const Scene& scene, const Hit& hit, bool of_second = false);

@@ -36,6 +36,7 @@ SurfaceReader::SurfaceReader(const Scene& scene) : scene_(scene) {
       mesh.positions = triangles->positions.data();
       if (!triangles->normals.empty()) mesh.normals = triangles->normals.data();
       if (!triangles->uvs.empty()) mesh.uvs = triangles->uvs.data();
+      mesh.has_colors = !triangles->colors.empty();
       if (!triangles->second_uvs.empty()) mesh.second_uvs = triangles->second_uvs.data();
     }
   }

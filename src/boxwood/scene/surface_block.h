@@ -45,6 +45,12 @@ class SurfaceReader {
   void prefetch_triangle(const Hit& hit) const;
   void prefetch_corners(const Hit& hit) const;
 
+  /// As the function of this name (surface.h). Not for a miss.
+  std::array<float, 4> vertex_color(const Hit& hit) const {
+    const Mesh& mesh = meshes_[hit.instance_id.value];
+    return mesh.has_colors ? boxwood::vertex_color(scene_, hit) : std::array<float, 4>{1, 1, 1, 1};
+  }
+
   /// Place `i` of the block is for `hits[which[i]]`, which the scene returned for `rays[which[i]]`. At most
   /// kBlock, none of them a miss.
   void read(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint32_t> which,
@@ -60,7 +66,7 @@ class SurfaceReader {
     const Vec2* second_uvs = nullptr;
     const MaterialId* materials = nullptr;  ///< One for each triangle; null: all have this one.
     MaterialId material;
-    bool is_moved = false;
+    bool is_moved = false, has_colors = false;
   };
 
   const Scene& scene_;
