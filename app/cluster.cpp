@@ -14,8 +14,10 @@ bool is_in_cluster() {
 
 #ifdef BOXWOOD_HAS_MPI
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <list>
 #include <thread>
 
 #define OMPI_SKIP_MPICXX 1
@@ -41,7 +43,7 @@ struct Hello {
 /// What a task brought; the words of its sums follow.
 struct ResultHead {
   Task task;
-  std::uint64_t rays, dropped;
+  render::Effort effort;
 };
 
 template <class T>
@@ -52,6 +54,37 @@ void append(std::vector<char>& bytes, const T* values, std::size_t count) {
 
 void send(int rank, Tag tag, const std::vector<char>& bytes = {}) {
   MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD);
+}
+
+/// Messages that leave while the sender goes on; their bytes stay here until they were taken.
+class Outbox {
+ public:
+  void send(int rank, Tag tag, std::vector<char> bytes) {
+    (void)is_empty();
+    Letter& letter = letters_.emplace_back(Letter{std::move(bytes), MPI_REQUEST_NULL});
+    MPI_Isend(letter.bytes.data(), static_cast<int>(letter.bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD,
+              &letter.request);
+  }
+  /// Whether all were taken.
+  bool is_empty() {
+    for (int is_taken = 1; is_taken && !letters_.empty();) {
+      MPI_Test(&letters_.front().request, &is_taken, MPI_STATUS_IGNORE);
+      if (is_taken) letters_.pop_front();
+    }
+    return letters_.empty();
+  }
+
+ private:
+  struct Letter {
+    std::vector<char> bytes;
+    MPI_Request request;
+  };
+  std::list<Letter> letters_;  // none of them may move
+};
+
+/// Leaves the processor to others for a moment, as what waits inside of MPI would not.
+void pause() {
+  std::this_thread::sleep_for(std::chrono::microseconds(200));
 }
 
 struct Message {
@@ -72,10 +105,10 @@ bool receive(Message& message) {
   return true;
 }
 
-/// The same, but waits for one, and leaves the processor to others meanwhile, as MPI_Probe would not.
+/// The same, but waits for one.
 Message wait_for_message() {
   Message message;
-  while (!receive(message)) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  while (!receive(message)) pause();
   return message;
 }
 
@@ -83,8 +116,18 @@ Executor& executor_of(const RenderJob& job) {
   return job.options().executor ? *job.options().executor : default_executor();
 }
 
+/// Calls work(tasks) with a share of them for each thread.
+template <class Work>
+void for_each_share(Executor& executor, std::span<const Task> tasks, const Work& work) {
+  const auto threads = static_cast<std::size_t>(executor.concurrency());
+  const std::size_t share = (tasks.size() + threads - 1) / threads;
+  parallel_for(executor, 0, (tasks.size() + share - 1) / share, 1, [&](std::size_t i) {
+    work(tasks.subspan(i * share, std::min(share, tasks.size() - i * share)));
+  });
+}
+
 std::vector<char> packed(const Task& task, const render::UnitResult& result) {
-  const ResultHead head{task, result.rays, result.dropped};
+  const ResultHead head{task, result.effort};
   std::vector<std::uint32_t> words(result.sums.word_count());
   result.sums.to_words(words);
   std::vector<char> bytes;
@@ -101,7 +144,7 @@ void hand_in(RenderJob& job, const std::vector<char>& bytes) {
   if (head.task.index >= round.unit_count() ||
       round.unit(head.task.unit.tile, head.task.index).first != head.task.unit.first)
     return;
-  render::UnitResult result{job.film().empty_tile(head.task.unit.tile), head.rays, head.dropped};
+  render::UnitResult result{job.film().empty_tile(head.task.unit.tile), head.effort};
   std::vector<std::uint32_t> words(result.sums.word_count());
   std::memcpy(words.data(), bytes.data() + sizeof(head), words.size() * 4);
   result.sums.from_words(words);
@@ -113,8 +156,9 @@ void hand_in(RenderJob& job, const std::vector<char>& bytes) {
 struct Cluster::State {
   /// What the leader knows of another rank.
   struct Helper {
-    int threads = 0;    // 0: it has not said hello, or cannot help
-    int busy_with = 0;  // tasks
+    std::size_t threads = 0;    // 0: it has not said hello, or cannot help
+    std::size_t busy_with = 0;  // tasks,
+    std::size_t sent_last = 0;  // so many of them in the last message
   };
 
   int rank = 0, size = 1;
@@ -140,7 +184,7 @@ struct Cluster::State {
     const std::string difference =
         hello.threads > 0 ? first_difference(render::facts_from(text), facts) : text;
     if (difference.empty())
-      helpers[static_cast<std::size_t>(message.rank)].threads = hello.threads;
+      helpers[static_cast<std::size_t>(message.rank)].threads = static_cast<std::size_t>(hello.threads);
     else
       warn("rank " + std::to_string(message.rank) + " cannot help: " + difference);
   }
@@ -179,6 +223,7 @@ RenderJob::Crew Cluster::crew(const RenderJob& job, std::function<void(const std
   state_->facts = render::facts_of(job);
   state_->warn = std::move(warn);
   return [this](RenderJob& led, std::span<const Task> tasks) {
+    if (tasks.empty()) return;
     // Tasks in order; when all are given out, those again that nobody has brought yet.
     std::size_t next = 0;
     const auto take = [&](std::size_t most) {
@@ -191,25 +236,32 @@ RenderJob::Crew Cluster::crew(const RenderJob& job, std::function<void(const std
     };
 
     Executor& executor = executor_of(led);
+    const auto own_threads = static_cast<std::size_t>(executor.concurrency());
     while (!led.is_stopped()) {
       state_->serve(led);
-      // Each helper has a second task for each thread waiting, so that none waits for us.
+      // How many each thread gets: several as long as many are left, then one by one.
+      const auto share = [&] {
+        std::size_t threads = own_threads;
+        for (const State::Helper& helper : state_->helpers) threads += helper.threads;
+        return render::tasks_at_once(tasks[0], tasks.size() - std::min(next, tasks.size()), threads);
+      };
+      // Each helper has a second message of tasks waiting, so that none waits for us.
       for (int rank = 1; rank < state_->size; ++rank) {
         State::Helper& helper = state_->helpers[static_cast<std::size_t>(rank)];
-        if (helper.busy_with > helper.threads || helper.threads == 0) continue;
+        if (helper.busy_with > helper.sent_last || helper.threads == 0) continue;
         // What others are at already is only for those who have nothing else to do.
         if (next >= tasks.size() && helper.busy_with > 0) continue;
-        const std::vector<Task> taken = take(static_cast<std::size_t>(helper.threads));
+        const std::vector<Task> taken = take(helper.threads * share());
         if (taken.empty()) return;
         std::vector<char> bytes;
         append(bytes, taken.data(), taken.size());
         send(rank, kTasks, bytes);
-        helper.busy_with += static_cast<int>(taken.size());
+        helper.busy_with += taken.size();
+        helper.sent_last = taken.size();
       }
-      const std::vector<Task> own = take(static_cast<std::size_t>(executor.concurrency()));
+      const std::vector<Task> own = take(own_threads * share());
       if (own.empty()) return;
-      parallel_for(executor, 0, own.size(), 1,
-                   [&](std::size_t i) { led.add(own[i], led.render(own[i].unit)); });
+      for_each_share(executor, own, [&](std::span<const Task> some) { led.render_and_add(some); });
     }
   };
 }
@@ -223,14 +275,20 @@ void Cluster::help(const RenderJob& job) {
   append(greeting, facts.data(), facts.size());
   send(0, kHello, greeting);
 
+  // Results wait for a leader who renders, too, while we go on with the tasks that are here already.
+  Outbox outbox;
   for (Message message = wait_for_message(); message.tag != kQuit; message = wait_for_message()) {
     std::vector<Task> tasks(message.bytes.size() / sizeof(Task));
     std::memcpy(tasks.data(), message.bytes.data(), tasks.size() * sizeof(Task));
     std::vector<std::vector<char>> results(tasks.size());
-    parallel_for(executor, 0, tasks.size(), 1,
-                 [&](std::size_t i) { results[i] = packed(tasks[i], job.render(tasks[i].unit)); });
-    for (const std::vector<char>& result : results) send(0, kResult, result);
+    for_each_share(executor, tasks, [&](std::span<const Task> some) {
+      const std::vector<render::UnitResult> brought = job.render(some);
+      const auto first = static_cast<std::size_t>(some.data() - tasks.data());
+      for (std::size_t i = 0; i < some.size(); ++i) results[first + i] = packed(some[i], brought[i]);
+    });
+    for (std::vector<char>& result : results) outbox.send(0, kResult, std::move(result));
   }
+  while (!outbox.is_empty()) pause();
   send(0, kBye);
 }
 

@@ -82,7 +82,9 @@ void print_camera(const std::optional<Camera>& camera) {
   if (!camera) return print_line("camera", "", "none; pictures frame the bounds");
   const Affine3& frame = camera->world_from_camera;
   print_line("camera", "", "at " + show(frame.origin) + ", looking along " + show(-frame.z));
-  std::string lens = fmt::format("{:g} degrees", camera->fov_deg);
+  std::string lens = camera->orthographic_size > 0
+                         ? fmt::format("orthographic, {:g} across", camera->orthographic_size)
+                         : fmt::format("{:g} degrees", camera->fov_deg);
   if (camera->lens_radius > 0)
     lens += fmt::format(", lens {:g}, sharp at {:g}", camera->lens_radius, camera->focus_distance);
   if (camera->width > 0) lens += fmt::format(", {}x{}", camera->width, camera->height);
@@ -209,6 +211,7 @@ Json to_json(const std::optional<Camera>& camera) {
           {"direction", to_json(-frame.z)},
           {"up", to_json(frame.y)},
           {"fov_deg", camera->fov_deg},
+          {"orthographic_size", camera->orthographic_size},
           {"lens_radius", camera->lens_radius},
           {"focus_distance", camera->focus_distance},
           {"size", {camera->width, camera->height}}};

@@ -72,7 +72,7 @@ void resume(const RenderArguments& arguments, const CheckpointFile& checkpoint, 
   if (!arguments.is_quiet)
     print_error(
         "going on from {} at {:.1f} samples\n", checkpoint.path(),
-        static_cast<double>(job.state().samples) / (double(job.options().width) * job.options().height));
+        static_cast<double>(job.effort().samples) / (double(job.options().width) * job.options().height));
 }
 
 /// Writes the picture to each of its files. What cannot be written where it was wanted ends up elsewhere.
@@ -152,7 +152,7 @@ void render_command(const RenderArguments& arguments) {
   bar.clear();
   const CheckpointFile checkpoint(arguments.outputs.front());
   resume(arguments, checkpoint, job);
-  const std::uint64_t rays_before = job.state().rays;
+  const std::uint64_t rays_before = job.effort().rays;
   watch.emplace(
       job, bar, checkpoint,
       WatchOptions{arguments.seconds, arguments.checkpoint_seconds, arguments.preview, arguments.look});

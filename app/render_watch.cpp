@@ -29,7 +29,7 @@ RenderWatch::RenderWatch(const render::RenderJob& job, ProgressBar& bar, const C
       options_(std::move(options)),
       preview_(options_.preview.empty() ? 0 : kFirstPreview, kPreviewInterval),
       checkpoints_(checkpoint.is_possible() ? options_.checkpoint_seconds : 0, options_.checkpoint_seconds),
-      rays_before_(job.state().rays) {}
+      rays_before_(job.effort().rays) {}
 
 bool RenderWatch::update(const render::RenderStatus& status) {
   const double time = elapsed();

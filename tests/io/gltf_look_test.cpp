@@ -71,7 +71,7 @@ TEST_F(Gltf, TexturesOfAllKindsAreReadAsTheyAreMeant) {
   write_image(path("p.png"), picture);
   Source source;
   source.parts["images"] = R"([{"uri":"p.png"}])";
-  source.parts["samplers"] = R"([{"wrapS":33071,"wrapT":33648}])";
+  source.parts["samplers"] = R"([{"wrapS":33071,"wrapT":33648,"magFilter":9728}])";
   source.parts["textures"] = R"([{"source":0},{"source":0,"sampler":0}])";
   source.parts["extensionsUsed"] = R"(["KHR_texture_transform"])";
   source.parts["materials"] = R"([{"alphaMode":"MASK","emissiveFactor":[1,1,1],"emissiveTexture":{"index":0},
@@ -94,11 +94,149 @@ TEST_F(Gltf, TexturesOfAllKindsAreReadAsTheyAreMeant) {
   EXPECT_FALSE(rough.is_srgb);
   EXPECT_EQ(rough.wrap_u, Texture::Wrap::clamp);
   EXPECT_EQ(rough.wrap_v, Texture::Wrap::mirror);
+  EXPECT_FALSE(rough.is_mixed);
+  EXPECT_TRUE(color.is_mixed);
   EXPECT_EQ(m.roughness_texture.channel, NumberTexture::Channel::green);
   EXPECT_EQ(m.metalness_texture.channel, NumberTexture::Channel::blue);
   EXPECT_FALSE(desc.textures[m.normal_texture.value].is_srgb);
   EXPECT_FLOAT_EQ(m.normal_scale, .5f);
   EXPECT_TRUE(desc.textures[m.emission_texture.value].is_srgb);
+}
+
+/// A triangle with three sets of texture coordinates, and a material that uses one picture in three places.
+/// Set n says (n / 4, 0) at every corner.
+class GltfUvSets : public Gltf {
+ protected:
+  GltfUvSets() {
+    Image picture(1, 1);
+    picture.pixels = {0, 1, 0};
+    write_image(path("p.png"), picture);
+    std::string views = R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3})",
+                accessors = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+                                {"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"})";
+    for (int set = 0; set < 3; ++set) {
+      const auto u = static_cast<float>(set) / 4;
+      views +=
+          R"(,{"buffer":0,"byteOffset":)" + std::to_string(source.buffer.size()) + R"(,"byteLength":24})";
+      accessors += R"(,{"bufferView":)" + std::to_string(2 + set) +
+                   R"(,"componentType":5126,"count":3,"type":"VEC2"})";
+      append<float>(source.buffer, {u, 0, u, 0, u, 0});
+    }
+    source.parts["bufferViews"] = views + "]";
+    source.parts["accessors"] = accessors + "]";
+    source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2,"TEXCOORD_1":3,
+        "TEXCOORD_2":4},"indices":1,"material":0}]}])";
+    source.parts["images"] = R"([{"uri":"p.png"}])";
+    source.parts["textures"] = R"([{"source":0}])";
+    source.parts["extensionsUsed"] = R"(["KHR_texture_transform","KHR_materials_clearcoat"])";
+  }
+  SceneDesc with_material(const std::string& material) {
+    source.parts["materials"] = "[" + material + "]";
+    return scene(source);
+  }
+  Source source;
+};
+
+TEST_F(GltfUvSets, AreReadWhereATextureLiesInThem) {
+  // All in one: one set is kept, whichever it is.
+  SceneDesc desc = with_material(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0);
+  EXPECT_TRUE(mesh(desc).second_uvs.empty());
+  desc = with_material(R"({"normalTexture":{"index":0,"texCoord":1},"occlusionTexture":{"index":0}})");
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0.25f);
+  EXPECT_TRUE(mesh(desc).second_uvs.empty());
+  EXPECT_FALSE(desc.textures.at(0).is_by_second_uvs);
+  EXPECT_TRUE(desc.warnings.empty());
+
+  // In two, the base color's is the first.
+  desc = with_material(R"({"emissiveFactor":[1,1,1],"emissiveTexture":{"index":0},
+      "pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":2}}})");
+  EXPECT_TRUE(desc.warnings.empty());
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0.5f);
+  EXPECT_EQ(mesh(desc).second_uvs.at(2).x, 0);
+  EXPECT_EQ(mesh(desc).second_uvs.at(2).y, 1);  // v points up here
+  const Material& m = desc.materials[0];
+  EXPECT_FALSE(desc.textures[m.color_texture.value].is_by_second_uvs);
+  EXPECT_TRUE(desc.textures[m.emission_texture.value].is_by_second_uvs);
+}
+
+TEST_F(GltfUvSets, ATransformMayNameAnotherSet) {
+  const SceneDesc desc = with_material(R"({"normalTexture":{"index":0},
+      "pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0,"texCoord":2,
+      "extensions":{"KHR_texture_transform":{"texCoord":1}}}}})");
+  EXPECT_TRUE(desc.warnings.empty());
+  EXPECT_EQ(mesh(desc).uvs.at(0).x, 0.25f);
+  EXPECT_EQ(mesh(desc).second_uvs.at(0).x, 0);
+}
+
+TEST_F(GltfUvSets, WhatIsTooMuchOrMissingIsNamedOnce) {
+  const std::string three = R"({"normalTexture":{"index":0,"texCoord":1},
+      "emissiveFactor":[1,1,1],"emissiveTexture":{"index":0,"texCoord":2},
+      "pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0,"texCoord":2}}})";
+  SceneDesc desc = with_material(three);
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "material 0: more than two sets of texture coordinates");
+
+  desc = with_material(R"({"normalTexture":{"index":0,"texCoord":5},
+      "pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "there is no TEXCOORD_5");
+}
+
+TEST_F(GltfUvSets, CoatsHaveNormalMapsOfTheirOwn) {
+  const SceneDesc desc = with_material(R"({"normalTexture":{"index":0},
+      "extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1,
+      "clearcoatNormalTexture":{"index":0,"texCoord":1,"scale":0.5}}}})");
+  EXPECT_TRUE(desc.warnings.empty());
+  const Material& m = desc.materials[0];
+  ASSERT_TRUE(m.coat_normal_texture.is_valid());
+  EXPECT_TRUE(desc.textures[m.coat_normal_texture.value].is_by_second_uvs);
+  EXPECT_FALSE(desc.textures[m.coat_normal_texture.value].is_srgb);
+  EXPECT_FLOAT_EQ(m.coat_normal_scale, .5f);
+  EXPECT_EQ(m.normal_scale, 1);
+}
+
+TEST_F(GltfUvSets, ColorsOfVerticesMultiplyThoseOfTheMaterial) {
+  // Bytes with alpha, and floats without.
+  const std::size_t bytes = source.buffer.size();
+  append<std::uint8_t>(source.buffer, {255, 0, 51, 102, 0, 255, 0, 255, 0, 0, 255, 0});
+  const std::size_t floats = source.buffer.size();
+  append<float>(source.buffer, {1, .5f, .25f, 0, 0, 0, 1, 1, 1});
+  std::string& views = source.parts["bufferViews"];
+  views.pop_back();
+  views += R"(,{"buffer":0,"byteLength":12,"byteOffset":)" + std::to_string(bytes) +
+           R"(},{"buffer":0,"byteLength":36,"byteOffset":)" + std::to_string(floats) + "}]";
+  std::string& accessors = source.parts["accessors"];
+  accessors.pop_back();
+  accessors += R"(,{"bufferView":5,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"},
+                   {"bufferView":6,"componentType":5126,"count":3,"type":"VEC3"}])";
+  source.parts["meshes"] = R"([{"primitives":[
+      {"attributes":{"POSITION":0,"TEXCOORD_0":2,"COLOR_0":5},"indices":1,"material":0},
+      {"attributes":{"POSITION":0,"COLOR_0":6},"indices":1},
+      {"attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":1}]}])";
+  SceneDesc desc =
+      with_material(R"({"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}},
+      {"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
+  EXPECT_TRUE(desc.warnings.empty());
+  EXPECT_EQ(mesh(desc, 0).colors.at(0), (std::array<float, 4>{1, 0, 51 / 255.0f, 102 / 255.0f}));
+  EXPECT_EQ(mesh(desc, 1).colors.at(0), (std::array<float, 4>{1, .5f, .25f, 1}));
+  EXPECT_TRUE(mesh(desc, 2).colors.empty());
+
+  const Material& colored = desc.materials.at(0);
+  const Texture& product = desc.textures.at(colored.color_texture.value);
+  ASSERT_EQ(product.kind, Texture::Kind::product);
+  EXPECT_EQ(desc.textures.at(product.first.texture.value).kind, Texture::Kind::picture);
+  EXPECT_EQ(desc.textures.at(product.second.texture.value).kind, Texture::Kind::vertex_color);
+  EXPECT_EQ(colored.opacity_texture.texture, colored.color_texture);
+  EXPECT_EQ(desc.textures.at(desc.materials.at(1).color_texture.value).kind, Texture::Kind::picture);
+
+  // Who has no material has that of the format: white, rough metal.
+  const Material& none = desc.materials.at(2);
+  EXPECT_EQ(desc.geometries[1].material, MaterialId(2));
+  EXPECT_EQ(none.metalness, 1);
+  EXPECT_EQ(none.roughness, 1);
+  EXPECT_EQ(none.color, (Vec3{1, 1, 1}));
+  EXPECT_EQ(desc.textures.at(none.color_texture.value).kind, Texture::Kind::vertex_color);
 }
 
 TEST_F(Gltf, PicturesAreDecodedOnceAndMissingOnesAreWarnings) {
@@ -165,6 +303,15 @@ TEST_F(Gltf, CamerasAndLights) {
   expect_near(desc.spot_lights[0].direction, {0, 0, -1});
   EXPECT_NEAR(desc.spot_lights[0].inner_cosine, std::cos(.1f), 1e-6f);
   EXPECT_NEAR(desc.spot_lights[0].outer_cosine, std::cos(.5f), 1e-6f);
+
+  // Parallel rays; the shorter side counts.
+  source.parts["nodes"] = R"([{"mesh":0,"camera":0}])";
+  source.parts["cameras"] =
+      R"([{"type":"orthographic","orthographic":{"xmag":3,"ymag":2,"zfar":9,"znear":0.1}}])";
+  EXPECT_EQ(scene(source).camera->orthographic_size, 4);
+  source.parts["cameras"] =
+      R"([{"type":"orthographic","orthographic":{"xmag":3,"ymag":0,"zfar":9,"znear":0.1}}])";
+  EXPECT_CONTAINS(error(source), "camera 0: xmag and ymag are 3");
 
   // An upright picture: the angle across the shorter side is the horizontal one.
   source.parts["cameras"] =

@@ -120,6 +120,28 @@ TEST(Aov, ColorTakesTheTextureOfTheMesh) {
   EXPECT_GT(color.at(26, 16)[2], 0.9f);
 }
 
+TEST(Aov, ColorTakesTheTextureBySecondCoordinates) {
+  SceneDesc desc;
+  Texture texture;
+  texture.width = 2;
+  texture.height = 1;
+  texture.texels = {{255, 0, 0, 255}, {0, 0, 255, 255}};
+  texture.is_by_second_uvs = true;
+  Material material = material_of_kind(Material::Kind::matte, splat(1));
+  material.color_texture = desc.add(std::move(texture));
+  TriangleMesh mesh{{{-1, -1, -2}, {1, -1, -2}, {1, 1, -2}, {-1, 1, -2}},
+                    {{0, 1, 2}, {0, 2, 3}},
+                    {},
+                    {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  mesh.second_uvs = {{1, 0}, {0, 0}, {0, 1}, {1, 1}};  // the other way round
+  desc.add(std::move(mesh), desc.add(material));
+  desc.camera = Camera{};
+  const Scene scene(std::move(desc));
+  const Image color = render_picture(scene, options_for(Mode::color)).image;
+  EXPECT_GT(color.at(6, 16)[2], 0.9f);
+  EXPECT_GT(color.at(26, 16)[0], 0.9f);
+}
+
 TEST(Aov, OcclusionOfTheOpenAndOfTheShutIn) {
   SceneDesc open;
   open.add(std::vector<Quad>{{{-2, -2, -5}, {2, -2, -5}, {2, 2, -5}, {-2, 2, -5}}});

@@ -29,9 +29,11 @@ Vec3 at_cosine(float cosine) {
 /// A material at a point, seen from somewhere.
 struct Probe {
   Probe(const Material& material, const Surface& surface, Vec3 outgoing)
+      : Probe(material, surface, outgoing, surface.shading_normal) {}
+  Probe(const Material& material, const Surface& surface, Vec3 outgoing, Vec3 coat_normal)
       : prepared(material),
-        look(look_at(SceneDesc{}, material, prepared, {0, 0})),
-        bsdf(look, surface, surface.shading_normal, outgoing) {}
+        look(look_at(SceneDesc{}, material, prepared, TexturePoint(surface))),
+        bsdf(look, surface, surface.shading_normal, outgoing, coat_normal) {}
   PreparedMaterial prepared;
   Look look;
   Bsdf bsdf;
@@ -39,8 +41,7 @@ struct Probe {
 
 /// The share of light that comes back in all directions together,
 /// as sample() finds it. Of red.
-float albedo(const Material& material, float cosine, bool from_inside = false) {
-  const Probe probe(material, flat_surface({0, 0, from_inside ? -1.0f : 1.0f}), at_cosine(cosine));
+float albedo(const Probe& probe) {
   // Even steps through the choices, since the lobes' weights differ much; 2^14 samples in all.
   constexpr std::uint32_t kChoices = 64, kEach = 256;
   double sum = 0;
@@ -51,6 +52,9 @@ float albedo(const Material& material, float cosine, bool from_inside = false) {
       if (const auto sample = probe.bsdf.sample(choice, sampler.next_2d())) sum += sample->weight.x;
     }
   return static_cast<float>(sum / (kChoices * kEach));
+}
+float albedo(const Material& material, float cosine, bool from_inside = false) {
+  return albedo(Probe(material, flat_surface({0, 0, from_inside ? -1.0f : 1.0f}), at_cosine(cosine)));
 }
 
 struct NamedMaterial {
@@ -168,63 +172,100 @@ double chi_square_limit(int degrees) {
   return k * std::pow(1 - 2 / (9 * k) + z * std::sqrt(2 / (9 * k)), 3);
 }
 
-TEST(Bsdf, SamplesFollowTheirDensityByChiSquare) {
-  // In cells of equal solid angle over the whole sphere: how often sample() comes there, and the integral of
-  // the density that evaluate() states. What sample() gives up, or draws from perfect lobes, is a cell too:
-  // so the density integrates to what it should.
+/// In cells of equal solid angle over the whole sphere: how often sample() comes there, and the integral of
+/// the density that evaluate() states. What sample() gives up, or draws from perfect lobes, is a cell too: so
+/// the density integrates to what it should.
+void expect_samples_follow_density(const Bsdf& bsdf, const std::string& name) {
   constexpr int kRings = 8, kSectors = 8, kCount = 100000, kSteps = 48;
-  for (const auto& [name, material] : white_materials({0.2f, 0.5f, 1.0f})) {
+  std::vector<double> found(kRings * kSectors + 1), expected(kRings * kSectors + 1);
+  const auto cell_of = [&](float z, float angle) {
+    const int ring = std::min(static_cast<int>((z + 1) / 2 * kRings), kRings - 1);
+    const int sector = std::min(static_cast<int>(angle / (2 * kPi) * kSectors), kSectors - 1);
+    return static_cast<std::size_t>(ring * kSectors + sector);
+  };
+  Random random(11);
+  for (int s = 0; s < kCount; ++s) {
+    const float choice = random.uniform();
+    const auto sample = bsdf.sample(choice, {random.uniform(), random.uniform()});
+    if (!sample || sample->is_perfect) {
+      found.back() += 1;
+      continue;
+    }
+    const float angle = std::atan2(sample->direction.y, sample->direction.x);
+    found[cell_of(sample->direction.z, angle < 0 ? angle + 2 * kPi : angle)] += 1;
+  }
+  for (int i = 0; i < kRings * kSteps; ++i)
+    for (int j = 0; j < kSectors * kSteps; ++j) {
+      const float z = 2 * (static_cast<float>(i) + 0.5f) / (kRings * kSteps) - 1;
+      const float angle = 2 * kPi * (static_cast<float>(j) + 0.5f) / (kSectors * kSteps),
+                  r = std::sqrt(1 - z * z);
+      const double cell = 4 * kPi / (kRings * kSectors * kSteps * kSteps);
+      expected[cell_of(z, angle)] +=
+          kCount * cell * bsdf.evaluate({r * std::cos(angle), r * std::sin(angle), z}).pdf;
+    }
+  const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
+  EXPECT_LE(all, kCount * 1.002) << name;
+  expected.back() = std::max(0.0, kCount - all);
+
+  // Cells in which little is expected are one cell together.
+  double chi_square = 0, few_found = 0, few_expected = 0;
+  int degrees = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (expected[i] < 20) {
+      few_found += found[i];
+      few_expected += expected[i];
+      continue;
+    }
+    // The grid is exact to some thousandths.
+    const double off = std::max(0.0, std::fabs(found[i] - expected[i]) - 0.004 * expected[i]);
+    chi_square += off * off / expected[i];
+    ++degrees;
+  }
+  EXPECT_NEAR(few_found, few_expected, 5 * std::sqrt(few_expected + 1) + 0.001 * kCount) << name;
+  EXPECT_LT(chi_square, chi_square_limit(degrees - 1)) << name;
+}
+
+TEST(Bsdf, SamplesFollowTheirDensityByChiSquare) {
+  for (const auto& [name, material] : white_materials({0.2f, 0.5f, 1.0f}))
     for (const bool from_inside : {false, true}) {
       const Probe probe(material, flat_surface({0, 0, from_inside ? -1.0f : 1.0f}), at_cosine(0.5f));
-      if (!probe.bsdf.has_spread()) continue;
-      std::vector<double> found(kRings * kSectors + 1), expected(kRings * kSectors + 1);
-      const auto cell_of = [&](float z, float angle) {
-        const int ring = std::min(static_cast<int>((z + 1) / 2 * kRings), kRings - 1);
-        const int sector = std::min(static_cast<int>(angle / (2 * kPi) * kSectors), kSectors - 1);
-        return static_cast<std::size_t>(ring * kSectors + sector);
-      };
-      Random random(11);
-      for (int s = 0; s < kCount; ++s) {
-        const float choice = random.uniform();
-        const auto sample = probe.bsdf.sample(choice, {random.uniform(), random.uniform()});
-        if (!sample || sample->is_perfect) {
-          found.back() += 1;
-          continue;
-        }
-        const float angle = std::atan2(sample->direction.y, sample->direction.x);
-        found[cell_of(sample->direction.z, angle < 0 ? angle + 2 * kPi : angle)] += 1;
-      }
-      for (int i = 0; i < kRings * kSteps; ++i)
-        for (int j = 0; j < kSectors * kSteps; ++j) {
-          const float z = 2 * (static_cast<float>(i) + 0.5f) / (kRings * kSteps) - 1;
-          const float angle = 2 * kPi * (static_cast<float>(j) + 0.5f) / (kSectors * kSteps),
-                      r = std::sqrt(1 - z * z);
-          const double cell = 4 * kPi / (kRings * kSectors * kSteps * kSteps);
-          expected[cell_of(z, angle)] +=
-              kCount * cell * probe.bsdf.evaluate({r * std::cos(angle), r * std::sin(angle), z}).pdf;
-        }
-      const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
-      EXPECT_LE(all, kCount * 1.002) << name;
-      expected.back() = std::max(0.0, kCount - all);
-
-      // Cells in which little is expected are one cell together.
-      double chi_square = 0, few_found = 0, few_expected = 0;
-      int degrees = 0;
-      for (std::size_t i = 0; i < found.size(); ++i) {
-        if (expected[i] < 20) {
-          few_found += found[i];
-          few_expected += expected[i];
-          continue;
-        }
-        // The grid is exact to some thousandths.
-        const double off = std::max(0.0, std::fabs(found[i] - expected[i]) - 0.004 * expected[i]);
-        chi_square += off * off / expected[i];
-        ++degrees;
-      }
-      EXPECT_NEAR(few_found, few_expected, 5 * std::sqrt(few_expected + 1) + 0.001 * kCount) << name;
-      EXPECT_LT(chi_square, chi_square_limit(degrees - 1)) << name << (from_inside ? " from inside" : "");
+      if (probe.bsdf.has_spread())
+        expect_samples_follow_density(probe.bsdf, name + (from_inside ? " from inside" : ""));
     }
-  }
+}
+
+/// A coat whose normal is not that of what it lies on, rough or smooth.
+TEST(Bsdf, ACoatMayHaveANormalOfItsOwn) {
+  const Vec3 outgoing = at_cosine(0.8f);
+  for (const float tilt : {0.2f, 0.6f, -0.4f})
+    for (const float roughness : {0.0f, 0.5f, 0.8f})
+      for (const float transmission : {0.0f, 0.5f}) {
+        const std::string name =
+            std::to_string(tilt) + " " + std::to_string(roughness) + " " + std::to_string(transmission);
+        Material coated = layered(0.2f, transmission, 0.5f);
+        coated.coat = 0.7f;
+        coated.coat_roughness = roughness;
+        const Vec3 coat_normal = normalize(Vec3{tilt, 0.1f, 1});
+        const Probe probe(coated, flat_surface({0, 0, 1}), outgoing, coat_normal);
+        // No more leaves than arrives; what the coat sends into the surface is lost.
+        EXPECT_LE(albedo(probe), 1.002f) << name;
+        EXPECT_GE(albedo(probe), 0.95f) << name;
+        expect_samples_follow_density(probe.bsdf, name);
+        Random random(9);
+        for (int i = 0; i < 500; ++i) {
+          const float choice = random.uniform();
+          const auto sample = probe.bsdf.sample(choice, {random.uniform(), random.uniform()});
+          if (!sample) continue;
+          if (sample->is_perfect) {  // the coat, as a mirror
+            EXPECT_LT(length(normalize(sample->direction + outgoing) - coat_normal), 1e-4f) << name;
+            continue;
+          }
+          const BsdfValue value = probe.bsdf.evaluate(sample->direction);
+          EXPECT_NEAR(value.pdf / sample->pdf, 1, 1e-3f) << name;
+          EXPECT_NEAR(length(value.value - sample->weight * sample->pdf) / length(value.value), 0, 1e-3f)
+              << name;
+        }
+      }
 }
 
 TEST(Bsdf, OpaqueMaterialsWithoutLayersAreReciprocal) {

@@ -29,6 +29,23 @@ SceneDesc random_points(std::uint64_t seed, Vec3 size, Vec3 center) {
   return desc;
 }
 
+TEST(Lens, ParallelRaysSpanTheirSizeOfTheWorld) {
+  Camera camera;
+  camera.world_from_camera = Affine3::look_at({3, 4, 5}, {0, 4, 5}, {0, 1, 0});  // along -x, right is -z
+  camera.orthographic_size = 2;
+  camera.lens_radius = 1;  // has no meaning then
+  const Lens lens(camera, 200, 100);
+  const Ray corner = lens.ray({0, 0}, {0.9f, 0.2f}), middle = lens.ray({100, 50}, {0.1f, 0.3f});
+  EXPECT_LT(length(middle.origin - Vec3{3, 4, 5}), 1e-6f);
+  EXPECT_LT(length(corner.origin - Vec3{3, 5, 7}), 1e-6f);
+  EXPECT_LT(length(middle.direction - Vec3{-1, 0, 0}), 1e-6f);
+  EXPECT_EQ(corner.direction, middle.direction);
+  EXPECT_EQ(pixel_angle(camera, 200, 100), 0);
+
+  camera.orthographic_size = -1;
+  EXPECT_THROW(Lens(camera, 200, 100), std::invalid_argument);
+}
+
 TEST(Camera, FramesEverythingAndFillsThePicture) {
   const Vec3 sizes[] = {{1, 1, 1}, {100, 0.01f, 3}, {0.001f, 0.002f, 0.0001f}, {1e4f, 1e4f, 10}, {0, 1, 0}};
   for (const Vec3 size : sizes) {

@@ -132,14 +132,17 @@ TEST(Film, TakesEachUnitOnce) {
   Film film(20, 20, {3, 1});
   TileSums tile = film.empty_tile(3);
   tile.add(0, 0, std::array{1.0f, 1.0f, 1.0f}, 1);
-  EXPECT_TRUE(film.add(3, 5, tile));
-  EXPECT_FALSE(film.add(3, 5, tile)) << "the same unit again";
-  EXPECT_TRUE(film.add(3, 6, tile));
+  EXPECT_TRUE(film.add(3, 5, tile, {10, 1, 0}));
+  EXPECT_FALSE(film.add(3, 5, tile, {10, 1, 0})) << "the same unit again";
+  EXPECT_TRUE(film.add(3, 6, tile, {10, 1, 0}));
   EXPECT_TRUE(film.has(3, 5));
   EXPECT_FALSE(film.has(3, 4));
   film.begin_round();
   EXPECT_FALSE(film.has(3, 5));
-  film.with_tile(3, [](const TileSums& sums, std::uint64_t) { EXPECT_EQ(sums.count(0, 0), 2); });
+  film.with_tile(3, [](const Film::Tile& held) {
+    EXPECT_EQ(held.sums.count(0, 0), 2);
+    EXPECT_EQ(held.effort, (Effort{20, 2, 0}));
+  });
 }
 
 }  // namespace

@@ -86,6 +86,54 @@ TEST(Job, ACheckpointIsWhatItWasInTheMiddleOfWork) {
   EXPECT_TRUE(same_bits(again.run().image, whole.image));
 }
 
+TEST(Job, UnitsTogetherBringWhatEachBringsAlone) {
+  const Scene scene(gallery::make("stilllife"));
+  const RenderJob job(scene, small_options());
+  const std::vector<Task> tasks{{{0, 0, 16}, 0}, {{5, 16, 16}, 0}, {{11, 32, 8}, 0}, {{2, 0, 1}, 0}};
+  const std::vector<UnitResult> together = job.render(tasks);
+  ASSERT_EQ(together.size(), tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const UnitResult alone = job.render(tasks[i].unit);
+    EXPECT_EQ(together[i].sums, alone.sums) << i;
+    EXPECT_EQ(together[i].effort, alone.effort) << i;
+    EXPECT_GT(alone.effort.rays, 0u) << i;
+  }
+}
+
+TEST(Job, WhatIsGoneOnWithCountsNothingTwice) {
+  // A checkpoint after every unit, most of them in the middle of what is rendered together; and while several
+  // threads hand in units.
+  const Scene scene(gallery::make("cornell"));
+  RenderOptions options = small_options();
+  options.width = 100;  // 35 tiles, of which one thread takes four together
+  options.height = 70;
+  options.samples = 4;
+  options.layers.clear();
+  const RenderResult whole = render_picture(scene, options);
+  const auto several = make_executor(3);
+  for (Executor* executor : {&serial_executor(), several.get()}) {
+    options.executor = executor;
+    std::vector<std::string> kept;
+    RenderJob* running = nullptr;
+    options.progress = [&](const RenderStatus&) {
+      kept.push_back(checkpoint_of(*running));
+      return true;
+    };
+    RenderJob job(scene, options);
+    running = &job;
+    EXPECT_EQ(job.run().rays, whole.rays);
+    ASSERT_GT(kept.size(), 10u);
+    options.progress = nullptr;
+    for (std::size_t i = 0; i < kept.size(); i += 11) {
+      RenderJob again(scene, options);
+      read_checkpoint(again, kept[i]);
+      const RenderResult result = again.run();
+      EXPECT_EQ(result.rays, whole.rays) << executor->concurrency() << " threads, checkpoint " << i;
+      EXPECT_EQ(result.samples, whole.samples) << executor->concurrency() << " threads, checkpoint " << i;
+    }
+  }
+}
+
 TEST(Job, IgnoresAUnitThatComesTwice) {
   const Scene scene(gallery::make("cornell"));
   const RenderOptions options = small_options();

@@ -194,6 +194,33 @@ TEST(Path, ASphereInAnEnvironmentIsTheIntegralOverItsHemisphere) {
   }
 }
 
+TEST(Path, LampsWithPicturesMayLieInTheSecondCoordinates) {
+  // The same lamp, half of it dark, its picture by the first set of coordinates or by the second.
+  const auto floor_under = [](bool by_second, bool is_swapped) {
+    return floor_radiance(
+        [&](SceneDesc& desc) {
+          Texture half;
+          half.width = 2;
+          half.height = 1;
+          half.texels = {{255, 255, 255, 255}, {0, 0, 0, 255}};
+          half.is_by_second_uvs = by_second;
+          Material shining = lamp(1);
+          shining.emission_texture = desc.add(half);
+          TriangleMesh mesh{{{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
+          const std::vector<Vec2> lies{{0, 0}, {1, 0}, {1, 1}, {0, 1}},
+              turned{{1, 0}, {0, 0}, {0, 1}, {1, 1}};
+          mesh.uvs = is_swapped ? turned : lies;
+          mesh.second_uvs = is_swapped ? lies : turned;
+          desc.add(std::move(mesh), desc.add(shining));
+        },
+        2048);
+  };
+  const float near_half = floor_under(false, false), far_half = floor_under(false, true);
+  EXPECT_GT(near_half, 1.2f * far_half);
+  EXPECT_EQ(floor_under(true, true), near_half);
+  EXPECT_EQ(floor_under(true, false), far_half);
+}
+
 TEST(Path, SpotLightsShineInTheirConeOnly) {
   // A floor under a spot that looks straight down: full light inside, none outside, and the smoothstep
   // between.

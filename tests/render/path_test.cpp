@@ -224,10 +224,10 @@ TEST(Path, ManyRaysAtOnceSeeWhatEachSeesAlone) {
   std::vector<Sampler> copies = samplers;
   std::vector<float> together(3 * kCount), alone(3 * kCount);
   const auto counted = std::make_unique<bool[]>(kCount);
-  RayCounts traced, traced_alone;
+  std::vector<RayCounts> traced(kCount), traced_alone(kCount);
   tracer->sample_many(rays, samplers, together, {counted.get(), kCount}, traced);
   for (std::size_t i = 0; i < kCount; ++i)
-    EXPECT_TRUE(tracer->sample(rays[i], copies[i], std::span(alone).subspan(3 * i, 3), traced_alone));
+    EXPECT_TRUE(tracer->sample(rays[i], copies[i], std::span(alone).subspan(3 * i, 3), traced_alone[i]));
   EXPECT_EQ(together, alone);
   EXPECT_EQ(traced, traced_alone);
 }

@@ -10,7 +10,11 @@ namespace {
 
 Vec3 texture_color(const Texture& texture, Vec2 uv, float width = 0) {
   SceneDesc desc;
-  return texture_at(desc, desc.add(texture), uv, width).color;
+  return texture_at(desc, desc.add(texture), {uv, uv, width, width}).color;
+}
+
+Vec3 color_at(const SceneDesc& desc, TextureId id, Vec2 uv) {
+  return texture_at(desc, id, {uv, uv}).color;
 }
 
 /// Two by two: red and green above, blue and white below.
@@ -80,6 +84,38 @@ TEST(Texture, LiesWhereItsAxesSay) {
   EXPECT_EQ(texture_color(texture, {0.25f, 0.25f}), (Vec3{1, 1, 1}));  // at (0.75, 0.25)
 }
 
+TEST(Texture, PixelsThatAreNotMixedAreSquares) {
+  Texture texture = four_colors();
+  texture.is_mixed = false;
+  EXPECT_EQ(texture_color(texture, {0.01f, 0.99f}), (Vec3{1, 0, 0}));
+  EXPECT_EQ(texture_color(texture, {0.49f, 0.51f}), (Vec3{1, 0, 0}));
+  EXPECT_EQ(texture_color(texture, {0.51f, 0.51f}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(texture_color(texture, {0.49f, 0.49f}), (Vec3{0, 0, 1}));
+  EXPECT_EQ(texture_color(texture, {1.49f, -0.01f}), (Vec3{1, 0, 0}));  // goes on again
+  texture.wrap_u = texture.wrap_v = Texture::Wrap::clamp;
+  EXPECT_EQ(texture_color(texture, {7, -7}), (Vec3{1, 1, 1}));
+  texture.is_mixed = true;
+  EXPECT_EQ(texture_color(texture, {0.5f, 0.75f}), (Vec3{0.5f, 0.5f, 0}));
+}
+
+TEST(Texture, LiesInTheSetOfCoordinatesThatItAsksFor) {
+  SceneDesc desc;
+  Texture texture = four_colors();
+  const TextureId first = desc.add(texture);
+  texture.is_by_second_uvs = true;
+  const TextureId second = desc.add(texture);
+  const TexturePoint point{{0.25f, 0.75f}, {0.75f, 0.75f}};
+  EXPECT_EQ(texture_at(desc, first, point).color, (Vec3{1, 0, 0}));
+  EXPECT_EQ(texture_at(desc, second, point).color, (Vec3{0, 1, 0}));
+
+  // In a pattern each part finds its own way.
+  Texture product;
+  product.kind = Texture::Kind::product;
+  product.first.texture = desc.add(four_colors());
+  product.second.texture = second;
+  EXPECT_EQ(texture_at(desc, desc.add(product), {{0.75f, 0.25f}, {0.75f, 0.75f}}).color, (Vec3{0, 1, 0}));
+}
+
 TEST(Texture, ProductsMixesAndCheckerboards) {
   SceneDesc desc;
   const TextureId picture = desc.add(four_colors());
@@ -88,7 +124,7 @@ TEST(Texture, ProductsMixesAndCheckerboards) {
   product.first = {{0.5f, 0.5f, 1}, picture};
   product.second = {{1, 0.5f, 0.25f}, picture};
   const TextureId product_id = desc.add(product);
-  EXPECT_EQ(texture_at(desc, product_id, {0.75f, 0.25f}).color, (Vec3{0.5f, 0.25f, 0.25f}));
+  EXPECT_EQ(color_at(desc, product_id, {0.75f, 0.25f}), (Vec3{0.5f, 0.25f, 0.25f}));
 
   Texture mix;
   mix.kind = Texture::Kind::mix;
@@ -96,7 +132,7 @@ TEST(Texture, ProductsMixesAndCheckerboards) {
   mix.second = {{0, 0, 1}, {}};
   mix.amount = {{0.25f, 0.25f, 0.25f}, {}};
   const TextureId mix_id = desc.add(mix);
-  EXPECT_EQ(texture_at(desc, mix_id, {0, 0}).color, (Vec3{0.75f, 0, 0.25f}));
+  EXPECT_EQ(color_at(desc, mix_id, {0, 0}), (Vec3{0.75f, 0, 0.25f}));
 
   Texture checks;
   checks.kind = Texture::Kind::checkerboard;
@@ -106,11 +142,10 @@ TEST(Texture, ProductsMixesAndCheckerboards) {
   checks.v_axis = {0, 4};
   const TextureId checks_id = desc.add(checks);
   // The squares are a quarter wide; the picture in them lies as it would alone.
-  EXPECT_EQ(texture_at(desc, checks_id, {0.2f, 0.2f}).color, texture_at(desc, picture, {0.2f, 0.2f}).color);
-  EXPECT_EQ(texture_at(desc, checks_id, {0.3f, 0.2f}).color, (Vec3{0, 0, 0}));
-  EXPECT_EQ(texture_at(desc, checks_id, {-0.1f, 0.1f}).color, (Vec3{0, 0, 0}));
-  EXPECT_EQ(texture_at(desc, checks_id, {-0.1f, -0.1f}).color,
-            texture_at(desc, picture, {-0.1f, -0.1f}).color);
+  EXPECT_EQ(color_at(desc, checks_id, {0.2f, 0.2f}), color_at(desc, picture, {0.2f, 0.2f}));
+  EXPECT_EQ(color_at(desc, checks_id, {0.3f, 0.2f}), (Vec3{0, 0, 0}));
+  EXPECT_EQ(color_at(desc, checks_id, {-0.1f, 0.1f}), (Vec3{0, 0, 0}));
+  EXPECT_EQ(color_at(desc, checks_id, {-0.1f, -0.1f}), color_at(desc, picture, {-0.1f, -0.1f}));
 }
 
 /// A picture of levels that are each of one grey: 1, 1/2, 1/4.

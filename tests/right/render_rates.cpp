@@ -41,7 +41,11 @@ double median(std::vector<double> values) {
 }
 
 /// The kinds of rays of the paths through every fourth pixel of every fourth row.
-render::RayCounts kinds_of(const Scene& scene) {
+struct Kinds {
+  double camera = 0, bounce = 0, shadow = 0;
+  double total() const { return camera + bounce + shadow; }
+};
+Kinds kinds_of(const Scene& scene) {
   const Camera camera = render::choose_camera(scene.description(), kWidth, kHeight);
   const render::Lens lens(camera, kWidth, kHeight);
   const auto tracer = render::make_path_tracer(scene, camera);
@@ -56,9 +60,15 @@ render::RayCounts kinds_of(const Scene& scene) {
     }
   std::vector<float> values(3 * rays.size());
   const auto is_counted = std::make_unique<bool[]>(rays.size());
-  render::RayCounts counts;
+  std::vector<render::RayCounts> counts(rays.size());
   tracer->sample_many(rays, samplers, values, {is_counted.get(), rays.size()}, counts);
-  return counts;
+  Kinds kinds;
+  for (const render::RayCounts& count : counts) {
+    kinds.camera += count.camera;
+    kinds.bounce += count.bounce;
+    kinds.shadow += count.shadow;
+  }
+  return kinds;
 }
 
 }  // namespace
@@ -111,11 +121,9 @@ int main(int count, char** arguments) try {
     pictures.push_back(static_cast<double>(traced) * 1e-6 / seconds);
   }
 
-  const render::RayCounts kinds = kinds_of(scene);
-  const auto whole = static_cast<double>(kinds.total());
-  const double camera = static_cast<double>(kinds.camera) / whole,
-               bounce = static_cast<double>(kinds.bounce) / whole,
-               shadow = static_cast<double>(kinds.shadow) / whole;
+  const Kinds kinds = kinds_of(scene);
+  const double camera = kinds.camera / kinds.total(), bounce = kinds.bounce / kinds.total(),
+               shadow = kinds.shadow / kinds.total();
   const auto expected = [&](const std::map<std::string, std::vector<double>>& rates) {
     const auto rate = [&](const char* set) { return median(rates.at(set)); };
     return 1 / (camera / rate("primary") + 0.5 * bounce / rate("bounce1") + 0.5 * bounce / rate("bounce2") +

@@ -38,9 +38,11 @@ TEST(Fingerprint, ChangesWithWhatCanBeSeen) {
   add([](SceneDesc&, TriangleMesh& mesh) { mesh.positions[3].y = -mesh.positions[3].y; });
   add([](SceneDesc&, TriangleMesh& mesh) { std::swap(mesh.indices[1], mesh.indices[2]); });
   add([](SceneDesc&, TriangleMesh& mesh) { mesh.uvs.resize(mesh.positions.size()); });
+  add([](SceneDesc&, TriangleMesh& mesh) { mesh.second_uvs.resize(mesh.positions.size()); });
+  add([](SceneDesc&, TriangleMesh& mesh) { mesh.colors.resize(mesh.positions.size()); });
   add([](SceneDesc&, TriangleMesh& mesh) { mesh.indices.pop_back(); });
   add([](SceneDesc& desc, TriangleMesh&) { desc.add(Instance{GeometryId(0), Affine3::scale(2), {}}); });
-  EXPECT_EQ(all.size(), 6u);
+  EXPECT_EQ(all.size(), 8u);
 }
 
 }  // namespace

@@ -37,6 +37,11 @@ TEST(SurfaceBlock, SurfacesAreThoseOfEachHit) {
       desc.add(Instance{mesh, {}, {}});
       desc.add(Instance{mesh, Affine3::translation({0.5f, 0, 0}), green});
     }
+  TriangleMesh twice_mapped = triangles(random, true, true);
+  twice_mapped.second_uvs = triangles(random, true, true).uvs;
+  const GeometryId twice = desc.add(std::move(twice_mapped), red);
+  desc.add(Instance{twice, {}, {}});
+  desc.add(Instance{twice, Affine3::scale(1.5f), {}});
   Geometry patchwork{triangles(random, true, true), red, {}, {}};
   for (int i = 0; i < 60; ++i) patchwork.materials.push_back(i % 2 ? red : green);
   desc.add(Instance{desc.add(patchwork), {}, {}});
@@ -58,7 +63,7 @@ TEST(SurfaceBlock, SurfacesAreThoseOfEachHit) {
   std::vector<std::uint32_t> order(rays.size());
   std::iota(order.rbegin(), order.rend(), 0u);
   SurfaceBlock block;
-  std::size_t smooth = 0, mapped = 0;
+  std::size_t smooth = 0, mapped = 0, mapped_twice = 0;
   for (std::size_t first = 0; first < order.size();) {
     // Blocks that are full, and others.
     const std::size_t count = std::min<std::size_t>(kBlock - first % 3, order.size() - first);
@@ -74,16 +79,20 @@ TEST(SurfaceBlock, SurfacesAreThoseOfEachHit) {
       EXPECT_EQ(found.normal, expected.normal);
       EXPECT_EQ(found.shading_normal, expected.shading_normal);
       EXPECT_EQ(found.uv, expected.uv);
+      EXPECT_EQ(found.second_uv, expected.second_uv);
       EXPECT_EQ(found.material, expected.material);
       EXPECT_EQ(block.clearance[i], expected.clearance());
       EXPECT_EQ(block.uv_density[i], uv_density(scene, hits[which[i]]));
+      EXPECT_EQ(block.second_uv_density[i], uv_density(scene, hits[which[i]], true));
       smooth += found.shading_normal != found.normal;
       mapped += block.uv_density[i] > 0;
+      mapped_twice += found.second_uv != found.uv;
     }
     first += count;
   }
   EXPECT_GT(smooth, 100u);
   EXPECT_GT(mapped, 100u);
+  EXPECT_GT(mapped_twice, 100u);
   EXPECT_LT(mapped, rays.size() - 100);
 }
 

@@ -120,8 +120,30 @@ TEST(Surface, InterpolatesWhatTheMeshGives) {
   EXPECT_NEAR(surface.position.x, 0.25f, 1e-6f);
   EXPECT_NEAR(surface.uv.x, 0.5f, 1e-6f);
   EXPECT_NEAR(surface.uv.y, 2.0f, 1e-6f);
+  EXPECT_EQ(surface.second_uv, surface.uv);
   EXPECT_GT(surface.shading_normal.x, 0.1f);
   EXPECT_EQ(surface.material, material);
+}
+
+TEST(Surface, HasTheSecondTextureCoordinatesOfTheMesh) {
+  SceneDesc desc;
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, {{0, 0}, {2, 0}, {0, 4}}};
+  mesh.second_uvs = {{0, 0}, {0, 6}, {6, 0}};
+  desc.add(mesh);
+  const Scene scene(desc);
+  const Ray ray{{0.25f, 0.5f, 5}, 0, {0, 0, -1}};
+  const Hit hit = scene.closest_hit(ray);
+  const Surface surface = surface_at(scene, ray, hit);
+  EXPECT_NEAR(surface.uv.x, 0.5f, 1e-6f);
+  EXPECT_NEAR(surface.second_uv.x, 3.0f, 1e-6f);
+  EXPECT_NEAR(surface.second_uv.y, 1.5f, 1e-6f);
+  EXPECT_FLOAT_EQ(uv_density(scene, hit), std::sqrt(8.0f));
+  EXPECT_FLOAT_EQ(uv_density(scene, hit, true), 6);
+
+  mesh.second_uvs.pop_back();
+  SceneDesc uneven;
+  uneven.add(mesh);
+  EXPECT_THROW(check(uneven), std::invalid_argument);
 }
 
 }  // namespace

@@ -188,6 +188,26 @@ class Builder {
     return placed;
   }
 
+  void set_perspective(const tinygltf::PerspectiveCamera& lens, const std::string& where,
+                       Camera& camera) const {
+    if (!(lens.yfov > 0 && lens.yfov * kDegrees < 180))
+      file_.fail(where,
+                 "yfov is " + std::to_string(lens.yfov) + " radians, expected more than 0 and less than pi");
+    camera.fov_deg = static_cast<float>(lens.yfov * kDegrees);
+    if (lens.aspectRatio > 0 && lens.aspectRatio < 1)  // upright: the shorter side is the width
+      camera.fov_deg =
+          static_cast<float>(2 * std::atan(std::tan(lens.yfov / 2) * lens.aspectRatio) * kDegrees);
+  }
+
+  void set_orthographic(const tinygltf::OrthographicCamera& lens, const std::string& where,
+                        Camera& camera) const {
+    const double half = std::fmin(std::fabs(lens.xmag), std::fabs(lens.ymag));
+    camera.orthographic_size = static_cast<float>(2 * half);
+    if (!(camera.orthographic_size > 0 && camera.orthographic_size < kInfinity))
+      file_.fail(where, "xmag and ymag are " + std::to_string(lens.xmag) + " and " +
+                            std::to_string(lens.ymag) + ", expected other numbers than 0");
+  }
+
   /// The first camera of the scene becomes ours.
   void add_camera(int index, const Affine3& world_from_node, const std::string& where) {
     if (index < 0 || std::size_t(index) >= model_.cameras.size())
@@ -195,20 +215,11 @@ class Builder {
                             std::to_string(model_.cameras.size()));
     const tinygltf::Camera& source = model_.cameras[index];
     if (desc_.camera) return;
-    if (source.type != "perspective") {
-      warn(desc_.warnings, file_, "camera " + std::to_string(index),
-           "orthographic cameras are not supported and left out");
-      return;
-    }
-    const tinygltf::PerspectiveCamera& lens = source.perspective;
-    if (!(lens.yfov > 0 && lens.yfov * kDegrees < 180))
-      file_.fail("camera " + std::to_string(index),
-                 "yfov is " + std::to_string(lens.yfov) + " radians, expected more than 0 and less than pi");
     Camera camera;
-    camera.fov_deg = static_cast<float>(lens.yfov * kDegrees);
-    if (lens.aspectRatio > 0 && lens.aspectRatio < 1)  // upright: the shorter side is the width
-      camera.fov_deg =
-          static_cast<float>(2 * std::atan(std::tan(lens.yfov / 2) * lens.aspectRatio) * kDegrees);
+    if (source.type == "orthographic")
+      set_orthographic(source.orthographic, "camera " + std::to_string(index), camera);
+    else
+      set_perspective(source.perspective, "camera " + std::to_string(index), camera);
 
     // Both conventions look along -z with +y up; the scale of nodes does not count for cameras.
     const Vec3 backward = normalize(world_from_node.z);

@@ -159,14 +159,24 @@ void check_count(const File& file, const tinygltf::Accessor& accessor, std::size
     (void)locate(file, accessor.bufferView, accessor.byteOffset, accessor.count, element_size, true, where);
 }
 
-/// `Vector` is Vec2 or Vec3.
-template <class Vector, int components>
+void set(Vec2& out, const std::array<float, 4>& numbers) {
+  out = {numbers[0], numbers[1]};
+}
+void set(Vec3& out, const std::array<float, 4>& numbers) {
+  out = {numbers[0], numbers[1], numbers[2]};
+}
+void set(std::array<float, 4>& out, const std::array<float, 4>& numbers) {
+  out = numbers;
+}
+
+/// Vectors of 2, 3 or 4 components; what is left of a `Vector` is 0, 0, 0, 1.
+template <class Vector, std::size_t components>
 std::vector<Vector> read_vectors(const File& file, int index, const std::string& asked_by) {
   const std::string where = asked_by + ", accessor " + std::to_string(index);
   const tinygltf::Accessor& accessor = find_accessor(file, index, where);
-  const int expected_type = components == 2 ? TINYGLTF_TYPE_VEC2 : TINYGLTF_TYPE_VEC3;
+  constexpr std::array kTypes{TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
   const std::size_t size = component_size(accessor.componentType);
-  if (accessor.type != expected_type || size == 0)
+  if (accessor.type != kTypes[components - 2] || size == 0)
     file.fail(where, "the accessor is of type " + std::to_string(accessor.type) + " with component type " +
                          std::to_string(accessor.componentType) + ", expected VEC" +
                          std::to_string(components) + " of numbers");
@@ -174,16 +184,14 @@ std::vector<Vector> read_vectors(const File& file, int index, const std::string&
 
   std::vector<Vector> out(accessor.count);
   for_each_element(file, accessor, size * components, where, [&](std::size_t i, const std::byte* at) {
-    float values[3] = {0, 0, 0};
-    for (int c = 0; c < components; ++c) {
+    std::array<float, 4> values{0, 0, 0, 1};
+    for (std::size_t c = 0; c < components; ++c) {
       values[c] = component(at + c * size, accessor.componentType, accessor.normalized);
       if (!std::isfinite(values[c]))
         file.fail(where, "element " + std::to_string(i) + ", number " + std::to_string(c) + " is " +
                              std::to_string(values[c]) + ", expected a finite number");
     }
-    out[i].x = values[0];
-    out[i].y = values[1];
-    if constexpr (components == 3) out[i].z = values[2];
+    set(out[i], values);
   });
   return out;
 }
@@ -214,6 +222,13 @@ std::vector<Vec2> read_vec2(const File& file, int accessor, const std::string& w
 
 std::vector<Vec3> read_vec3(const File& file, int accessor, const std::string& where) {
   return read_vectors<Vec3, 3>(file, accessor, where);
+}
+
+std::vector<std::array<float, 4>> read_colors(const File& file, int accessor, const std::string& where) {
+  using Color = std::array<float, 4>;
+  const bool has_alpha = find_accessor(file, accessor, where).type == TINYGLTF_TYPE_VEC4;
+  return has_alpha ? read_vectors<Color, 4>(file, accessor, where)
+                   : read_vectors<Color, 3>(file, accessor, where);
 }
 
 std::vector<std::uint32_t> read_indices(const File& file, int index, const std::string& asked_by) {

@@ -5,6 +5,7 @@
 // size of what it looks into. See the glTF 2.0 specification, section 3.6.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -19,6 +20,8 @@ namespace boxwood::io::gltf {
 /// number is not finite.
 std::vector<Vec2> read_vec2(const File& file, int accessor, const std::string& where);
 std::vector<Vec3> read_vec3(const File& file, int accessor, const std::string& where);
+/// Of three components or four; the fourth is 1 where there are three.
+std::vector<std::array<float, 4>> read_colors(const File& file, int accessor, const std::string& where);
 
 /// The elements of a scalar accessor of unsigned integers. Throws FileError as above.
 std::vector<std::uint32_t> read_indices(const File& file, int accessor, const std::string& where);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include <tiny_gltf.h>
@@ -63,17 +64,26 @@ struct TextureUse {
   const tinygltf::Value* transform = nullptr;  // KHR_texture_transform
 };
 
+int whole_number(const tinygltf::Value* object, const char* name, int otherwise) {
+  const tinygltf::Value* value = member(object, name);
+  return value != nullptr && value->IsInt() ? value->GetNumberAsInt() : otherwise;
+}
+
+/// The transform has the last word on the set of coordinates.
+TextureUse use_of(int texture, int uv_set, const tinygltf::Value* transform) {
+  return {texture, whole_number(transform, "texCoord", uv_set), transform};
+}
 TextureUse use_of(const auto& info) {
-  return {info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform")};
+  return use_of(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"));
 }
 TextureUse use_of(const tinygltf::Value* object, const char* name) {
   const tinygltf::Value* info = member(object, name);
   if (info == nullptr) return {};
-  return {static_cast<int>(number(info, "index", -1)), static_cast<int>(number(info, "texCoord", 0)),
-          member(member(info, "extensions"), "KHR_texture_transform")};
+  return use_of(whole_number(info, "index", -1), whole_number(info, "texCoord", 0),
+                member(member(info, "extensions"), "KHR_texture_transform"));
 }
 
-/// Every texture of a material, whatever for.
+/// Every texture of a material, whatever for; the base color's comes first.
 std::vector<TextureUse> textures_of(const tinygltf::Material& m) {
   std::vector<TextureUse> uses = {use_of(m.pbrMetallicRoughness.baseColorTexture),
                                   use_of(m.pbrMetallicRoughness.metallicRoughnessTexture),
@@ -82,6 +92,7 @@ std::vector<TextureUse> textures_of(const tinygltf::Material& m) {
       {"KHR_materials_transmission", "transmissionTexture"},
       {"KHR_materials_clearcoat", "clearcoatTexture"},
       {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
+      {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
       {"KHR_materials_sheen", "sheenColorTexture"},
       {"KHR_materials_sheen", "sheenRoughnessTexture"},
       {"KHR_materials_specular", "specularTexture"},
@@ -89,6 +100,20 @@ std::vector<TextureUse> textures_of(const tinygltf::Material& m) {
   for (const auto& [extension_name, name] : kOthers)
     uses.push_back(use_of(extension(m.extensions, extension_name), name));
   return uses;
+}
+
+UvSets uv_sets_of(const tinygltf::Material& material) {
+  UvSets sets;
+  bool is_first = true;
+  for (const TextureUse& use : textures_of(material)) {
+    if (use.texture < 0) continue;
+    if (is_first)
+      sets.first = use.uv_set;
+    else if (use.uv_set != sets.first && !sets.second)
+      sets.second = use.uv_set;
+    is_first = false;
+  }
+  return sets;
 }
 
 /// The picture behind a texture, or -1.
@@ -144,14 +169,15 @@ class MaterialMaker {
   MaterialMaker(const File& file, Executor& executor, SceneDesc& desc)
       : file_(file), desc_(desc), pictures_(read_pictures(file, executor, desc.warnings)) {}
 
-  Material make(const tinygltf::Material& source, const std::string& where) {
-    uv_set_ = source.pbrMetallicRoughness.baseColorTexture.texCoord;
+  /// `is_colored`: vertices have colors where it is used.
+  Material make(const tinygltf::Material& source, const std::string& where, bool is_colored) {
+    uv_sets_ = uv_sets_of(source);
     where_ = where;
     Material m;
     m.name = source.name;
     m.kind = Material::Kind::layered;
     m.roughness_scale = Material::RoughnessScale::square_root_of_alpha;
-    take_base(source, m);
+    take_base(source, m, is_colored);
     take_emission(source, m);
     take_layers(source.extensions, m);
     take_inside(source.extensions, m);
@@ -162,13 +188,14 @@ class MaterialMaker {
   using Channel = NumberTexture::Channel;
 
   /// Base color, metalness, roughness, opacity and normals: what every material has.
-  void take_base(const tinygltf::Material& source, Material& m) {
+  void take_base(const tinygltf::Material& source, Material& m, bool is_colored) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     m.color = color_of(pbr.baseColorFactor, {1, 1, 1});
     if (const TextureUse use = use_of(pbr.baseColorTexture); use.texture >= 0) {
       m.color_texture = texture_id(use, true);
       if (!m.color_texture.is_valid()) m.color *= 0.5f;
     }
+    if (is_colored) m.color_texture = times_vertex_colors(m.color_texture);
     m.metalness = clamp01(pbr.metallicFactor);
     m.roughness = clamp01(pbr.roughnessFactor);
     const TextureId rough_metal = texture_id(use_of(pbr.metallicRoughnessTexture), false);
@@ -207,8 +234,8 @@ class MaterialMaker {
     m.coat_texture = {texture_id(use_of(coat, "clearcoatTexture"), false), Channel::red};
     m.coat_roughness = clamp01(number(coat, "clearcoatRoughnessFactor", 0));
     m.coat_roughness_texture = {texture_id(use_of(coat, "clearcoatRoughnessTexture"), false), Channel::green};
-    if (member(coat, "clearcoatNormalTexture") != nullptr)
-      warn(desc_.warnings, file_, where_, "normal maps of coats are not supported and left out");
+    m.coat_normal_texture = texture_id(use_of(coat, "clearcoatNormalTexture"), false);
+    m.coat_normal_scale = static_cast<float>(number(member(coat, "clearcoatNormalTexture"), "scale", 1));
 
     const tinygltf::Value* sheen = extension(extensions, "KHR_materials_sheen");
     m.sheen_color = color(sheen, "sheenColorFactor", {0, 0, 0});
@@ -254,21 +281,22 @@ class MaterialMaker {
         warn(desc_.warnings, file_, where_, "a texture leads to no picture; plain color stands in");
       return {};
     }
-    if (use.uv_set != uv_set_)
-      warn(desc_.warnings, file_, where_,
-           "textures by different sets of texture coordinates are not supported; all use that of the base "
-           "color");
-
     Texture placed;
+    placed.is_by_second_uvs = uv_sets_.second == use.uv_set;
+    if (use.uv_set != uv_sets_.first && !placed.is_by_second_uvs)
+      warn(desc_.warnings, file_, where_,
+           "more than two sets of texture coordinates are not supported; the first stands in for the third");
     const int sampler = file_.model->textures[use.texture].sampler;
     if (sampler >= 0 && std::size_t(sampler) < file_.model->samplers.size()) {
       placed.wrap_u = wrap_of(file_.model->samplers[sampler].wrapS);
       placed.wrap_v = wrap_of(file_.model->samplers[sampler].wrapT);
+      placed.is_mixed = file_.model->samplers[sampler].magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST;
     }
     move_by(use.transform, placed);
-    const auto [entry, is_new] = ids_.try_emplace({image, is_color, int(placed.wrap_u), int(placed.wrap_v),
-                                                   placed.u_axis.x, placed.u_axis.y, placed.v_axis.x,
-                                                   placed.v_axis.y, placed.offset.x, placed.offset.y});
+    const auto [entry, is_new] =
+        ids_.try_emplace({image, is_color, placed.is_by_second_uvs, placed.is_mixed, int(placed.wrap_u),
+                          int(placed.wrap_v), placed.u_axis.x, placed.u_axis.y, placed.v_axis.x,
+                          placed.v_axis.y, placed.offset.x, placed.offset.y});
     if (!is_new) return entry->second;
     placed.name = picture->name;
     placed.width = picture->width;
@@ -277,6 +305,22 @@ class MaterialMaker {
     placed.source = picture->source;
     placed.is_srgb = is_color && picture->is_srgb;  // numbers never are
     return entry->second = desc_.add(std::move(placed));
+  }
+
+  TextureId times_vertex_colors(TextureId picture) {
+    if (!vertex_colors_.is_valid()) {
+      Texture colors;
+      colors.kind = Texture::Kind::vertex_color;
+      colors.name = "colors of vertices";
+      vertex_colors_ = desc_.add(std::move(colors));
+    }
+    if (!picture.is_valid()) return vertex_colors_;
+    Texture product;
+    product.kind = Texture::Kind::product;
+    product.name = desc_.textures[picture.value].name;
+    product.first.texture = picture;
+    product.second.texture = vertex_colors_;
+    return desc_.add(std::move(product));
   }
 
   /// KHR_texture_transform: scale, turn, then move, in coordinates whose v points down; ours points up.
@@ -293,8 +337,10 @@ class MaterialMaker {
   const File& file_;
   SceneDesc& desc_;
   std::map<int, Texture> pictures_;
-  std::map<std::tuple<int, bool, int, int, float, float, float, float, float, float>, TextureId> ids_;
-  int uv_set_ = 0;     // of the material that is being made
+  std::map<std::tuple<int, bool, bool, bool, int, int, float, float, float, float, float, float>, TextureId>
+      ids_;
+  TextureId vertex_colors_;
+  UvSets uv_sets_;     // of the material that is being made
   std::string where_;  // its place, for messages
 };
 
@@ -303,14 +349,24 @@ class MaterialMaker {
 void add_materials(const File& file, Executor& executor, SceneDesc& desc) {
   MaterialMaker maker(file, executor, desc);
   const auto& materials = file.model->materials;
+  constexpr int kNone = -1;
+  std::set<int> used, colored;
+  for (const tinygltf::Mesh& mesh : file.model->meshes)
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      const int id = std::max(primitive.material, kNone);
+      used.insert(id);
+      if (primitive.attributes.count("COLOR_0") != 0) colored.insert(id);
+    }
   for (std::size_t i = 0; i < materials.size(); ++i)
-    desc.add(maker.make(materials[i], "material " + std::to_string(i)));
+    desc.add(
+        maker.make(materials[i], "material " + std::to_string(i), colored.count(static_cast<int>(i)) != 0));
+  if (used.count(kNone) != 0) desc.add(maker.make({}, "no material", colored.count(kNone) != 0));
 }
 
-int base_color_uv_set(const File& file, int material) {
+UvSets uv_sets(const File& file, int material) {
   const auto& materials = file.model->materials;
-  if (material < 0 || std::size_t(material) >= materials.size()) return 0;
-  return materials[material].pbrMetallicRoughness.baseColorTexture.texCoord;
+  return material >= 0 && std::size_t(material) < materials.size() ? uv_sets_of(materials[material])
+                                                                   : UvSets{};
 }
 
 }  // namespace boxwood::io::gltf

@@ -6,6 +6,8 @@
 // shut in.
 #pragma once
 
+#include <optional>
+
 #include "boxwood/core/parallel.h"
 #include "boxwood/io/gltf_model.h"
 #include "boxwood/scene/description.h"
@@ -13,10 +15,16 @@
 namespace boxwood::io::gltf {
 
 /// Adds all materials of the file, in order, and their pictures; warns of what is lost. A picture that is
-/// missing or broken is a warning too.
+/// missing or broken is a warning too. After them comes the format's own material for primitives without one,
+/// if there are any.
 void add_materials(const File& file, Executor& executor, SceneDesc& desc);
 
-/// Which set of texture coordinates a material's base color needs.
-int base_color_uv_set(const File& file, int material);
+/// Which sets of texture coordinates a material's textures lie in: the base color's, or else that of its
+/// first texture, and the first other one.
+struct UvSets {
+  int first = 0;
+  std::optional<int> second;
+};
+UvSets uv_sets(const File& file, int material);
 
 }  // namespace boxwood::io::gltf

@@ -69,12 +69,26 @@ std::optional<Geometry> read_primitive(const File& file, std::size_t mesh_index,
     mesh.normals = read_vec3(file, normals, where + ", NORMAL");
     check_length(mesh.normals.size(), "NORMAL");
   }
-  const std::string uv_name = "TEXCOORD_" + std::to_string(base_color_uv_set(file, primitive.material));
-  if (const int uvs = attribute(primitive, uv_name); uvs != -1) {
-    mesh.uvs = read_vec2(file, uvs, where + ", " + uv_name);
-    check_length(mesh.uvs.size(), uv_name);
-    for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;  // v points down in glTF, up here
+  const auto read_uvs = [&](int set) {
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    const int accessor = attribute(primitive, name);
+    if (accessor == -1) return std::vector<Vec2>();
+    std::vector<Vec2> uvs = read_vec2(file, accessor, where + ", " + name);
+    check_length(uvs.size(), name);
+    for (Vec2& uv : uvs) uv.y = 1 - uv.y;  // v points down in glTF, up here
+    return uvs;
+  };
+  if (const int colors = attribute(primitive, "COLOR_0"); colors != -1) {
+    mesh.colors = read_colors(file, colors, where + ", COLOR_0");
+    check_length(mesh.colors.size(), "COLOR_0");
   }
+  const UvSets sets = uv_sets(file, primitive.material);
+  mesh.uvs = read_uvs(sets.first);
+  if (sets.second) mesh.second_uvs = read_uvs(*sets.second);
+  if (sets.second && mesh.second_uvs.empty())
+    warn(warnings, file, where,
+         "there is no TEXCOORD_" + std::to_string(*sets.second) +
+             ", which the material asks for; the material's first set stands in");
 
   // The order of the vertices: as given, or one after the other.
   std::vector<std::uint32_t> indices;
@@ -94,19 +108,17 @@ std::optional<Geometry> read_primitive(const File& file, std::size_t mesh_index,
          "the last triangle has only " + std::to_string(indices.size() % 3) + " vertices and is left out");
   mesh.indices = triangles_of(indices, primitive.mode);
 
-  if (attribute(primitive, "COLOR_0") != -1)
-    warn(warnings, file, "", "colors of vertices are not supported and left out");
   if (!primitive.targets.empty())
     warn(warnings, file, "", "morph targets are not supported; meshes have their plain form");
 
   Geometry geometry{std::move(mesh), {}, {}, source.name};
   if (source.primitives.size() > 1) geometry.name += " " + std::to_string(primitive_index);
-  if (primitive.material >= 0) {
-    if (std::size_t(primitive.material) >= file.model->materials.size())
-      file.fail(where, "material " + std::to_string(primitive.material) + " does not exist, there are " +
-                           std::to_string(file.model->materials.size()));
-    geometry.material = MaterialId(primitive.material);
-  }
+  const std::size_t materials = file.model->materials.size();
+  if (primitive.material >= 0 && std::size_t(primitive.material) >= materials)
+    file.fail(where, "material " + std::to_string(primitive.material) + " does not exist, there are " +
+                         std::to_string(materials));
+  geometry.material =
+      MaterialId(static_cast<std::uint32_t>(primitive.material >= 0 ? primitive.material : materials));
   return geometry;
 }
 

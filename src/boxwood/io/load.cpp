@@ -59,8 +59,9 @@ void mend_normals(TriangleMesh& mesh) {
 
 // Texture coordinates that are not finite would poison every picture that looks them up.
 void mend_uvs(TriangleMesh& mesh) {
-  for (Vec2& uv : mesh.uvs)
-    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
+  for (std::vector<Vec2>* uvs : {&mesh.uvs, &mesh.second_uvs})
+    for (Vec2& uv : *uvs)
+      if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
 }
 
 }  // namespace

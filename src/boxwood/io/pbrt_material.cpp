@@ -78,7 +78,7 @@ void Materials::define(const Directive& directive) {
 
 void Materials::set_normal_map(Material& material, const Directive& directive) {
   if (const std::string file = directive.parameters.string("normalmap", ""); !file.empty())
-    material.normal_texture = textures_.normal_map(file, directive.place);
+    material.normal_texture = material.coat_normal_texture = textures_.normal_map(file, directive.place);
 }
 
 int Materials::find(const std::string& name, const Place& place) const {

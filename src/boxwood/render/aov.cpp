@@ -29,7 +29,7 @@ class ColorIntegrator final : public Integrator {
     const Surface surface = surface_at(scene_, ray, hit);
     const Material& material = material_of(desc, surface.material);
     if (is_emissive(material)) return material.emission / max(1.0f, max_component(material.emission));
-    return base_color(desc, material, surface.uv);
+    return base_color(desc, material, TexturePoint(scene_, hit, surface));
   }
   const Scene& scene_;
 };

@@ -23,16 +23,23 @@ float schlick(float cosine) {
 
 }  // namespace
 
-Bsdf::Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing)
+Bsdf::Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing, Vec3 coat_normal)
     : look_(look), outgoing_world_(outgoing), alpha_(look.alpha) {
-  // Turn both normals to the viewer. Where an interpolated normal looks away from the viewer all the same, it
+  // Turn all normals to the viewer. Where an interpolated normal looks away from the viewer all the same, it
   // has gone too far.
   is_inside_ = dot(surface.normal, outgoing) < 0;
   geometric_ = is_inside_ ? -surface.normal : surface.normal;
-  z_ = is_inside_ ? -normal : normal;
-  if (!(dot(z_, outgoing) > 1e-3f)) z_ = geometric_;
+  const auto facing = [&](Vec3 n) {
+    const Vec3 turned = is_inside_ ? -n : n;
+    return dot(turned, outgoing) > 1e-3f ? turned : geometric_;
+  };
+  const auto cosine = [&](Vec3 n) { return min(max(dot(n, outgoing), 1e-5f), 1.0f); };
+  z_ = facing(normal);
   orthonormal_basis(z_, x_, y_);
-  outgoing_ = {dot(x_, outgoing), dot(y_, outgoing), min(max(dot(z_, outgoing), 1e-5f), 1.0f)};
+  outgoing_ = {dot(x_, outgoing), dot(y_, outgoing), cosine(z_)};
+  coat_normal_ = facing(coat_normal);
+  coat_cosine_ = cosine(coat_normal_);
+  has_own_coat_ = look.coat > 0 && coat_normal_ != z_;
   eta_ = is_inside_ && !look.is_thin ? 1 / look.ior : look.ior;
 
   set_shares();
@@ -77,7 +84,7 @@ void Bsdf::set_shares() {
       float below = 1;
       if (look_.coat > 0) {
         share_[coat] = look_.coat;
-        below -= look_.coat * coat_albedo(outgoing_.z);
+        below -= look_.coat * coat_albedo(coat_cosine_);
       }
       if (look_.prepared->sheen) {
         share_[sheen] = below;
@@ -109,7 +116,7 @@ void Bsdf::set_chances() {
         alpha_ > 0 ? look_.prepared->coat_over_base->mean(alpha_) : look_.prepared->fresnel_mean;
     passes_ = (1 - reflected) / (1 - boundary_ * mean);
   }
-  chance_[coat] = share_[coat] > 0 ? share_[coat] * coat_albedo(z) : 0;
+  chance_[coat] = share_[coat] > 0 ? share_[coat] * coat_albedo(coat_cosine_) : 0;
   if (share_[sheen] > 0)
     chance_[sheen] =
         share_[sheen] * max_component(look_.sheen_color) * look_.prepared->sheen->at(look_.sheen_alpha, z);
@@ -179,19 +186,45 @@ float Bsdf::glass_reflectance(float cosine) const {
 BsdfValue Bsdf::evaluate(Vec3 incoming) const {
   // Nothing comes through the true surface but what is meant to, whatever the interpolated normal says.
   const Vec3 local{dot(x_, incoming), dot(y_, incoming), dot(z_, incoming)};
-  if ((dot(incoming, geometric_) > 0) != (local.z > 0)) return {};
-  return evaluate_local(local);
+  BsdfValue sum;
+  if ((dot(incoming, geometric_) > 0) == (local.z > 0)) sum = evaluate_local(local);
+  if (has_own_coat_) sum += evaluate_own_coat(incoming);
+  return sum;
 }
 
 BsdfValue Bsdf::evaluate_local(Vec3 incoming) const {
   BsdfValue sum;
-  for (unsigned left = spread_; left != 0; left &= left - 1) {
+  const unsigned apart = has_own_coat_ ? 1u << coat : 0;
+  for (unsigned left = spread_ & ~apart; left != 0; left &= left - 1) {
     const int lobe = std::countr_zero(left);
     const Scattered part = evaluate_lobe(Lobe(lobe), incoming);
     sum.value += part.value * share_[lobe];
     sum.pdf += part.pdf * chance_[lobe];
   }
   return sum;
+}
+
+/// `incoming` is in world space.
+BsdfValue Bsdf::evaluate_own_coat(Vec3 incoming) const {
+  if (is_perfect(coat) || !(dot(incoming, geometric_) > 0)) return {};
+  const Frame frame(coat_normal_);
+  const Vec3 in = frame.to_local(incoming), out = outgoing_in(frame);
+  if (!(in.z > 0)) return {};
+  const Scattered part = evaluate_coat(out, in);
+  return {part.value * share_[coat], part.pdf * chance_[coat]};
+}
+
+/// In a frame whose z is the normal of the coat.
+Bsdf::Scattered Bsdf::evaluate_coat(Vec3 outgoing, Vec3 incoming) const {
+  const Ggx ggx{look_.coat_alpha};
+  const Vec3 half = normalize(incoming + outgoing);
+  const float fresnel = fresnel_dielectric(min(dot(outgoing, half), 1.0f), kCoatIor);
+  return {splat(fresnel) * ggx.reflection(outgoing, incoming, half), ggx.reflection_pdf(outgoing, half)};
+}
+
+Vec3 Bsdf::outgoing_in(const Frame& of_coat) const {
+  const Vec3 local = of_coat.to_local(outgoing_world_);
+  return {local.x, local.y, coat_cosine_};
 }
 
 Bsdf::Scattered Bsdf::evaluate_lobe(Lobe lobe, Vec3 incoming) const {
@@ -217,14 +250,14 @@ Bsdf::Scattered Bsdf::evaluate_lobe(Lobe lobe, Vec3 incoming) const {
     }
     case metal:
       return evaluate_metal(incoming);
+    case coat:
+      return evaluate_coat(outgoing_, incoming);
     case sheen:
       return {look_.sheen_color * sheen_lobe(look_.sheen_alpha, outgoing_, incoming), 1 / (2 * kPi)};
     default: {
-      const Ggx ggx{lobe == coat ? look_.coat_alpha : alpha_};
+      const Ggx ggx{alpha_};
       const Vec3 half = normalize(incoming + outgoing_);
-      const float cosine = min(dot(outgoing_, half), 1.0f);
-      const Vec3 fresnel =
-          lobe == coat ? splat(fresnel_dielectric(cosine, kCoatIor)) : specular_fresnel(cosine);
+      const Vec3 fresnel = specular_fresnel(min(dot(outgoing_, half), 1.0f));
       return {fresnel * ggx.reflection(outgoing_, incoming, half), ggx.reflection_pdf(outgoing_, half)};
     }
   }
@@ -287,13 +320,29 @@ std::optional<BsdfSample> Bsdf::sample(float choice, Vec2 u) const {
   choice = min(max(choice / chance_[last], 0.0f), 0x1.fffffep-1f);
   if (is_perfect(Lobe(last))) return sample_perfect(Lobe(last), choice);
 
+  if (has_own_coat_ && last == coat) return sample_own_coat(u);
   const std::optional<Vec3> incoming = sample_lobe(Lobe(last), choice, u);
   if (!incoming) return std::nullopt;
   BsdfSample sample;
   sample.direction = normalize(to_world(*incoming));
   sample.is_transmission = incoming->z < 0;
   if ((dot(sample.direction, geometric_) > 0) == sample.is_transmission) return std::nullopt;
-  const BsdfValue value = evaluate_local(*incoming);
+  BsdfValue value = evaluate_local(*incoming);
+  if (has_own_coat_) value += evaluate_own_coat(sample.direction);
+  if (!(value.pdf > 0)) return std::nullopt;
+  sample.weight = value.value / value.pdf;
+  sample.pdf = value.pdf;
+  return sample;
+}
+
+std::optional<BsdfSample> Bsdf::sample_own_coat(Vec2 u) const {
+  const Frame frame(coat_normal_);
+  const Vec3 out = outgoing_in(frame);
+  BsdfSample sample;
+  sample.direction =
+      normalize(frame.to_world(mirror(out, Ggx{look_.coat_alpha}.sample_visible_normal(out, u))));
+  if (!(dot(sample.direction, geometric_) > 0)) return std::nullopt;
+  const BsdfValue value = evaluate(sample.direction);
   if (!(value.pdf > 0)) return std::nullopt;
   sample.weight = value.value / value.pdf;
   sample.pdf = value.pdf;
@@ -339,7 +388,7 @@ std::optional<BsdfSample> Bsdf::sample_perfect(Lobe lobe, float choice) const {
   sample.is_perfect = true;
   const float factor = share_[lobe] / chance_[lobe];
   const auto reflect = [&](Vec3 weight) {
-    sample.direction = mirror(outgoing_world_, z_);
+    sample.direction = mirror(outgoing_world_, lobe == coat ? coat_normal_ : z_);
     // An interpolated normal may send the reflection into the surface; then the face itself is the mirror.
     if (!(dot(sample.direction, geometric_) > 0)) sample.direction = mirror(outgoing_world_, geometric_);
     sample.weight = weight * factor;
@@ -347,7 +396,7 @@ std::optional<BsdfSample> Bsdf::sample_perfect(Lobe lobe, float choice) const {
   };
   if (lobe == metal) return reflect(metal_fresnel(outgoing_.z));
   if (lobe == specular) return reflect(specular_fresnel(outgoing_.z));
-  if (lobe == coat) return reflect(splat(fresnel_dielectric(outgoing_.z, kCoatIor)));
+  if (lobe == coat) return reflect(splat(fresnel_dielectric(coat_cosine_, kCoatIor)));
 
   // Glass: reflected and refracted light in proportion.
   if (choice < glass_reflectance(outgoing_.z)) return reflect(look_.reflection_color);

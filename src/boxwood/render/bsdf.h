@@ -19,6 +19,7 @@
 #include <optional>
 
 #include "boxwood/render/material.h"
+#include "boxwood/render/warp.h"
 #include "boxwood/scene/surface.h"
 
 namespace boxwood::render {
@@ -35,6 +36,11 @@ struct BsdfSample {
 struct BsdfValue {
   Vec3 value;     ///< BSDF * cosine, of the spread lobes.
   float pdf = 0;  ///< The density with which sample() finds the direction by its spread lobes.
+
+  void operator+=(const BsdfValue& other) {
+    value += other.value;
+    pdf += other.pdf;
+  }
 };
 
 /// Interpolated normals let light fall on faces that point away from it, and the shadow that the faces cast
@@ -51,7 +57,10 @@ class Bsdf {
  public:
   /// At `surface`, seen from `outgoing` (unit length, away from the surface). Keeps a reference to `look`.
   /// `normal` is what to shade by, on the side of surface.normal.
-  Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing);
+  Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing)
+      : Bsdf(look, surface, normal, outgoing, normal) {}
+  /// With a coat that has a normal of its own.
+  Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing, Vec3 coat_normal);
 
   /// Whether there is a spread lobe, which light sources can be sampled for.
   bool has_spread() const { return spread_ != 0; }
@@ -80,7 +89,11 @@ class Bsdf {
   Scattered evaluate_metal(Vec3 incoming) const;
   Scattered evaluate_glass(Vec3 incoming) const;
   BsdfValue evaluate_local(Vec3 incoming) const;
+  Scattered evaluate_coat(Vec3 outgoing, Vec3 incoming) const;
+  BsdfValue evaluate_own_coat(Vec3 incoming) const;
+  Vec3 outgoing_in(const Frame& of_coat) const;
   std::optional<Vec3> sample_lobe(Lobe lobe, float choice, Vec2 u) const;
+  std::optional<BsdfSample> sample_own_coat(Vec2 u) const;
   std::optional<BsdfSample> sample_perfect(Lobe lobe, float choice) const;
   bool is_perfect(Lobe lobe) const;
 
@@ -98,6 +111,9 @@ class Bsdf {
   Vec3 x_, y_, z_;                     // the shading frame, z towards the viewer
   Vec3 outgoing_world_;
   Vec3 outgoing_;       // in the shading frame
+  Vec3 coat_normal_;    // towards the viewer
+  float coat_cosine_;   // between it and the viewer
+  bool has_own_coat_;   // its normal is not z_, so that it has a frame of its own
   float eta_;           // glass: the index of refraction of the other side over that of this side
   float alpha_;         // of metal, glass and boundary
   Vec3 diffuse_;        // what the matte base sends back of the light that reaches it

@@ -34,11 +34,15 @@ void for_each_hull_point(const SceneDesc& desc, const Visit& visit) {
   }
 }
 
-/// Half the width and half the height of the picture at distance 1. The angle spans the shorter side.
-Vec2 half_extent(float fov_deg, int width, int height) {
-  const float half = std::tan(0.5f * fov_deg * kDegree);
+/// Half the width and half the height of a picture whose shorter side is twice `half` long.
+Vec2 half_sides(float half, int width, int height) {
   const float shorter = static_cast<float>(std::min(width, height));
   return {half * static_cast<float>(width) / shorter, half * static_cast<float>(height) / shorter};
+}
+
+/// The same for the picture at distance 1. The angle spans the shorter side.
+Vec2 half_extent(float fov_deg, int width, int height) {
+  return half_sides(std::tan(0.5f * fov_deg * kDegree), width, height);
 }
 
 }  // namespace
@@ -46,17 +50,21 @@ Vec2 half_extent(float fov_deg, int width, int height) {
 Lens::Lens(const Camera& camera, int width, int height)
     : world_from_camera_(camera.world_from_camera),
       lens_radius_(camera.lens_radius),
-      focus_distance_(camera.focus_distance) {
+      focus_distance_(camera.focus_distance),
+      is_orthographic_(camera.orthographic_size > 0) {
   const Affine3& m = camera.world_from_camera;
   if (!(camera.fov_deg > 0 && camera.fov_deg < 180))
     throw std::invalid_argument("camera: the field of view is " + std::to_string(camera.fov_deg) +
                                 " degrees, expected more than 0 and less than 180");
+  if (!(camera.orthographic_size >= 0 && camera.orthographic_size < kInfinity))
+    throw std::invalid_argument("camera: expected a finite orthographic size of 0 or more");
   if (!is_finite(m.x) || !is_finite(m.y) || !is_finite(m.z) || !is_finite(m.origin) || determinant(m) == 0)
     throw std::invalid_argument("camera: its transform is not finite or flattens space");
   if (!(lens_radius_ >= 0) || (lens_radius_ > 0 && !(focus_distance_ > 0)))
     throw std::invalid_argument("camera: expected a lens radius of 0 or more, and a focus distance above 0");
 
-  const Vec2 half = half_extent(camera.fov_deg, width, height);
+  const Vec2 half = is_orthographic_ ? half_sides(0.5f * camera.orthographic_size, width, height)
+                                     : half_extent(camera.fov_deg, width, height);
   corner_ = {-half.x, half.y, -1};
   step_right_ = {2 * half.x / static_cast<float>(width), 0, 0};
   step_down_ = {0, -2 * half.y / static_cast<float>(height), 0};
@@ -65,7 +73,10 @@ Lens::Lens(const Camera& camera, int width, int height)
 Ray Lens::ray(Vec2 film, Vec2 lens) const {
   Vec3 direction = corner_ + step_right_ * film.x + step_down_ * film.y;
   Vec3 origin{0, 0, 0};
-  if (lens_radius_ > 0) {
+  if (is_orthographic_) {
+    origin = {direction.x, direction.y, 0};
+    direction = {0, 0, -1};
+  } else if (lens_radius_ > 0) {
     // Turn the ray so that it still meets the point in focus, but starts elsewhere on the lens.
     const Vec2 disk = uniform_disk(lens);
     origin = Vec3{disk.x, disk.y, 0} * lens_radius_;
@@ -78,6 +89,7 @@ Ray Lens::ray(Vec2 film, Vec2 lens) const {
 }
 
 float pixel_angle(const Camera& camera, int width, int height) {
+  if (camera.orthographic_size > 0) return 0;
   return 2 * half_extent(camera.fov_deg, width, height).x / static_cast<float>(width);
 }
 

@@ -1,8 +1,8 @@
 // camera.h: which ray belongs to a point of the picture?
 //
 // A pinhole, or a thin lens: all rays of one film point meet in one point of the plane of focus, and each
-// starts elsewhere on the lens. A scene without a camera gets one that fills the picture with everything that
-// is shown.
+// starts elsewhere on the lens. Or rays that are all parallel. A scene without a camera gets one that fills
+// the picture with everything that is shown.
 #pragma once
 
 #include "boxwood/scene/scene.h"
@@ -24,9 +24,10 @@ class Lens {
   Affine3 world_from_camera_;
   Vec3 corner_, step_right_, step_down_;  // on the plane z = -1 of the camera
   float lens_radius_, focus_distance_;
+  bool is_orthographic_;
 };
 
-/// How wide a pixel in the middle of the picture looks, in radians.
+/// How wide a pixel in the middle of the picture looks, in radians; 0 where rays are parallel.
 float pixel_angle(const Camera& camera, int width, int height);
 
 /// The scene's own camera, else one that frames it.

@@ -9,7 +9,7 @@
 namespace boxwood::render {
 namespace {
 
-constexpr std::string_view kMagic = "boxwood checkpoint 1\n";  // the number is that of the layout below
+constexpr std::string_view kMagic = "boxwood checkpoint 2\n";  // the number is that of the layout below
 
 /// A check sum against torn and mixed files: FNV-1a, over words instead of bytes.
 class CheckSum {
@@ -63,8 +63,12 @@ class Reader {
 /// Where a job stands, beside its tiles: plain data of a fixed layout.
 struct Header {
   std::int32_t round_begin, round_end;
-  std::uint64_t rays, dropped, samples;
   double noise;  // negative: not known
+};
+
+/// What a tile holds, beside its sums.
+struct TileHead {
+  std::uint64_t units, rays, samples, dropped;
 };
 
 }  // namespace
@@ -115,19 +119,18 @@ void write_checkpoint(const RenderJob& job, const std::function<void(std::string
     put_text(fact.value);
   }
   const RenderJob::State state = job.state();
-  put(bytes_of(Header{state.round.begin, state.round.end, state.rays, state.dropped, state.samples,
-                      state.noise.value_or(-1)}));
+  put(bytes_of(Header{state.round.begin, state.round.end, state.noise.value_or(-1)}));
   put({reinterpret_cast<const char*>(state.is_settled.data()), state.is_settled.size()});
 
   // Each tile is copied under its lock and written without.
   std::vector<std::uint32_t> words;
   for (std::size_t tile = 0; tile < job.film().grid().size(); ++tile) {
-    const std::uint64_t units = job.film().with_tile(tile, [&](const TileSums& sums, std::uint64_t present) {
-      words.resize(sums.word_count());
-      sums.to_words(words);
-      return present;
+    const TileHead head = job.film().with_tile(tile, [&](const Film::Tile& held) {
+      words.resize(held.sums.word_count());
+      held.sums.to_words(words);
+      return TileHead{held.units, held.effort.rays, held.effort.samples, held.effort.dropped};
     });
-    put(bytes_of(units));
+    put(bytes_of(head));
     put({reinterpret_cast<const char*>(words.data()), words.size() * 4});
   }
   sink(bytes_of(sum.value()));
@@ -149,29 +152,25 @@ void read_checkpoint(RenderJob& job, std::string_view bytes) {
   const auto header = reader.value<Header>();
   RenderJob::State state;
   state.round = {header.round_begin, header.round_end};
-  state.rays = header.rays;
-  state.dropped = header.dropped;
-  state.samples = header.samples;
   if (header.noise >= 0) state.noise = header.noise;
   const std::string_view settled = reader.take(job.film().grid().size());
   state.is_settled.assign(settled.begin(), settled.end());
 
   // Everything is read before anything is believed.
-  std::vector<std::pair<std::uint64_t, TileSums>> tiles;
+  std::vector<Film::Tile> tiles;
   std::vector<std::uint32_t> words;
   for (std::size_t tile = 0; tile < job.film().grid().size(); ++tile) {
-    const auto units = reader.value<std::uint64_t>();
-    tiles.emplace_back(units, job.film().empty_tile(tile));
-    words.resize(tiles.back().second.word_count());
+    const auto head = reader.value<TileHead>();
+    tiles.push_back({job.film().empty_tile(tile), {head.rays, head.samples, head.dropped}, head.units});
+    words.resize(tiles.back().sums.word_count());
     std::memcpy(words.data(), reader.take(words.size() * 4).data(), words.size() * 4);
-    tiles.back().second.from_words(words);
+    tiles.back().sums.from_words(words);
   }
   const std::uint64_t expected = reader.check_sum();
   if (reader.value<std::uint64_t>() != expected || !reader.is_at_end())
     throw std::runtime_error("the checkpoint is damaged");
 
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile)
-    job.film().set(tile, std::move(tiles[tile].second), tiles[tile].first);
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) job.film().set(tile, std::move(tiles[tile]));
   job.restore(state);
 }
 

@@ -5,6 +5,7 @@
 #include "boxwood/render/material.h"
 #include "boxwood/render/texture.h"
 #include "boxwood/render/warp.h"
+#include "boxwood/scene/triangle_point.h"
 
 namespace boxwood::render {
 namespace {
@@ -49,6 +50,7 @@ EmitterGroup::EmitterGroup(const SceneDesc& desc, const Instance& instance)
     shines = is_emissive(material_at(i));
   if (!shines || std::holds_alternative<std::vector<AnyShape>>(geometry.shapes)) return;
 
+  mesh_ = std::get_if<TriangleMesh>(&geometry.shapes);
   emitters_per_part_ = emitters_per_part(geometry.shapes);
   first_emitter_.assign(count, kNoEmitter);
   std::visit(
@@ -64,9 +66,7 @@ EmitterGroup::EmitterGroup(const SceneDesc& desc, const Instance& instance)
             if (material.emission_texture.is_valid()) {
               Emitter& emitter = emitters_.back();
               emitter.texture = material.emission_texture;
-              emitter.uvs = shapes.uvs.empty()
-                                ? std::array<Vec2, 3>{Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}}
-                                : std::array<Vec2, 3>{shapes.uvs[a], shapes.uvs[b], shapes.uvs[c]};
+              emitter.triangle = static_cast<std::uint32_t>(i);
               emitter.mean_radiance = mean_of_texture(emitter);
             }
           } else if constexpr (!std::is_same_v<Shapes, std::vector<AnyShape>>) {
@@ -78,11 +78,12 @@ EmitterGroup::EmitterGroup(const SceneDesc& desc, const Instance& instance)
 }
 
 Vec3 EmitterGroup::textured_radiance(const Emitter& triangle, Vec2 weights) const {
-  const auto& [a, b, c] = triangle.uvs;
-  const float first = 1 - weights.x - weights.y;
-  const Vec2 uv{a.x * first + b.x * weights.x + c.x * weights.y,
-                a.y * first + b.y * weights.x + c.y * weights.y};
-  return triangle.radiance * texture_at(desc_, triangle.texture, uv).color;
+  const auto& [i, j, k] = mesh_->indices[triangle.triangle];
+  const auto place = [&, i = i, j = j, k = k](const std::vector<Vec2>& uvs) {
+    return uvs.empty() ? weights : blend(uvs[i], uvs[j], uvs[k], weights.x, weights.y);
+  };
+  const TexturePoint point{place(mesh_->uvs), place(mesh_->uvs_for(true))};
+  return triangle.radiance * texture_at(desc_, triangle.texture, point).color;
 }
 
 /// The mean over some points; never 0, since there may be light between them.

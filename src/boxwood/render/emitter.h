@@ -60,11 +60,11 @@ class EmitterGroup {
     float radius = 0;  // sphere, object space
     Vec3 normal;       // triangle and disk; the front
     Vec3 radiance;
-    float area = 0;           // world space; of a squeezed sphere only roughly
-    float mean_radiance = 0;  // brightness
-    float clearance = 0;      // of all but spheres
-    TextureId texture;        // of the radiance; triangles only
-    std::array<Vec2, 3> uvs{};
+    float area = 0;              // world space; of a squeezed sphere only roughly
+    float mean_radiance = 0;     // brightness
+    float clearance = 0;         // of all but spheres
+    TextureId texture;           // of the radiance; triangles of meshes only
+    std::uint32_t triangle = 0;  // of the mesh
   };
 
   /// Each adds the emitters of one shape, in object space.
@@ -82,6 +82,7 @@ class EmitterGroup {
   float sphere_density(const Emitter& sphere, Vec3 object_normal, Vec3 receiver) const;
 
   const SceneDesc& desc_;
+  const TriangleMesh* mesh_ = nullptr;  // null: other shapes
   Affine3 world_from_object_, object_from_world_;
   float volume_scale_ = 1;
   std::vector<Emitter> emitters_;

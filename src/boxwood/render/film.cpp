@@ -93,12 +93,13 @@ TileSums Film::empty_tile(std::size_t tile) const {
   return {grid_.area(tile).pixel_count(), group_sizes_};
 }
 
-bool Film::add(std::size_t tile, int unit, const TileSums& sums) {
+bool Film::add(std::size_t tile, int unit, const TileSums& sums, const Effort& effort) {
   const std::lock_guard lock(locks_[tile]);
   const std::uint64_t bit = std::uint64_t{1} << unit;
   if (tiles_[tile].units & bit) return false;
   tiles_[tile].units |= bit;
   tiles_[tile].sums.add(sums);
+  tiles_[tile].effort += effort;
   return true;
 }
 
@@ -114,9 +115,9 @@ void Film::begin_round() {
   }
 }
 
-void Film::set(std::size_t tile, TileSums sums, std::uint64_t units) {
+void Film::set(std::size_t tile, Tile held) {
   const std::lock_guard lock(locks_[tile]);
-  tiles_[tile] = {std::move(sums), units};
+  tiles_[tile] = std::move(held);
 }
 
 }  // namespace boxwood::render

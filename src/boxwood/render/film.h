@@ -94,6 +94,20 @@ class TileSums {
   std::vector<std::uint32_t> samples_;      // pixel
 };
 
+/// What was done for a tile's sums.
+struct Effort {
+  std::uint64_t rays = 0;     ///< Traced.
+  std::uint64_t samples = 0;  ///< Taken, of all its pixels together;
+  std::uint64_t dropped = 0;  ///< of which so many were not finite, and left out.
+
+  void operator+=(const Effort& other) {
+    rays += other.rays;
+    samples += other.samples;
+    dropped += other.dropped;
+  }
+  friend bool operator==(const Effort&, const Effort&) = default;
+};
+
 /// All tiles, and which units of the present round (rounds.h) each of them holds.
 class Film {
  public:
@@ -104,29 +118,30 @@ class Film {
   /// A tile without samples, to be filled and then added.
   TileSums empty_tile(std::size_t tile) const;
 
+  struct Tile {
+    TileSums sums;
+    Effort effort = {};
+    std::uint64_t units = 0;  ///< Bit i stands for unit i of the round.
+  };
+
   /// Adds what unit `unit` (0 to 63) of the round brought to the tile. False, and nothing happens, when the
   /// film holds that unit already.
-  bool add(std::size_t tile, int unit, const TileSums& sums);
+  bool add(std::size_t tile, int unit, const TileSums& sums, const Effort& effort = {});
   /// Whether the tile holds that unit.
   bool has(std::size_t tile, int unit) const;
   /// Forgets which units there were: a new round begins.
   void begin_round();
 
-  /// Calls look(const TileSums&, units) while nobody adds to the tile; bit i of `units` stands for unit i.
+  /// Calls look(const Tile&) while nobody adds to the tile.
   template <class Look>
   auto with_tile(std::size_t tile, const Look& look) const {
     const std::lock_guard lock(locks_[tile]);
-    return look(tiles_[tile].sums, tiles_[tile].units);
+    return look(tiles_[tile]);
   }
   /// Replaces what the tile holds.
-  void set(std::size_t tile, TileSums sums, std::uint64_t units);
+  void set(std::size_t tile, Tile held);
 
  private:
-  struct Tile {
-    TileSums sums;
-    std::uint64_t units = 0;
-  };
-
   TileGrid grid_;
   std::vector<int> group_sizes_;
   std::vector<Tile> tiles_;

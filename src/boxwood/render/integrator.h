@@ -12,12 +12,12 @@
 
 namespace boxwood::render {
 
-/// How many rays were traced, by what they asked.
+/// How many rays a sample traced, by what they asked.
 struct RayCounts {
-  std::uint64_t camera = 0;  ///< The closest hit, from the camera.
-  std::uint64_t bounce = 0;  ///< The closest hit, from a surface.
-  std::uint64_t shadow = 0;  ///< Whether anything is in the way.
-  std::uint64_t total() const { return camera + bounce + shadow; }
+  std::uint32_t camera = 0;  ///< The closest hit, from the camera.
+  std::uint32_t bounce = 0;  ///< The closest hit, from a surface.
+  std::uint32_t shadow = 0;  ///< Whether anything is in the way.
+  std::uint64_t total() const { return std::uint64_t(camera) + bounce + shadow; }
   friend bool operator==(const RayCounts&, const RayCounts&) = default;
 };
 
@@ -31,13 +31,14 @@ class Integrator {
   /// nothing to count (the pixel's mean is then that of its other samples).
   virtual bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, RayCounts& rays) const = 0;
 
-  /// The same for many rays at once, with the same answers: `out` has channels() floats for each, and
-  /// `is_counted` what sample() returns. Modes that gain by tracing rays in batches do so here.
+  /// The same for many rays at once, with the same answers: `out` has channels() floats for each, `rays` its
+  /// counts, and `is_counted` what sample() returns. Modes that gain by tracing rays in batches do so here.
   virtual void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers,
-                           std::span<float> out, std::span<bool> is_counted, RayCounts& rays) const {
+                           std::span<float> out, std::span<bool> is_counted,
+                           std::span<RayCounts> rays) const {
     const auto width = static_cast<std::size_t>(channels());
     for (std::size_t i = 0; i < camera_rays.size(); ++i)
-      is_counted[i] = sample(camera_rays[i], samplers[i], out.subspan(i * width, width), rays);
+      is_counted[i] = sample(camera_rays[i], samplers[i], out.subspan(i * width, width), rays[i]);
   }
 };
 

@@ -36,22 +36,15 @@ int share_end(const RenderOptions& options, int index) {
   return static_cast<int>(std::int64_t(options.samples) * index / options.shard.count);
 }
 
-/// Threads of one machine, by an executor. Each takes several units at a time, so that many paths go on
-/// together, but not so many that some threads run out of work long before the others.
+/// Threads of one machine, by an executor.
 void work_here(RenderJob& job, std::span<const Task> tasks) {
   if (tasks.empty()) return;
   Executor& executor = job.options().executor ? *job.options().executor : default_executor();
   const auto threads = static_cast<std::size_t>(executor.concurrency());
-  const std::size_t unit_samples = std::size_t(tasks[0].unit.count) * kTileSide * kTileSide;
-  const std::size_t group = std::clamp<std::size_t>(kSamplesAtOnce / unit_samples, 1,
-                                                    std::max<std::size_t>(1, tasks.size() / (8 * threads)));
+  const std::size_t group = tasks_at_once(tasks[0], tasks.size(), threads);
   parallel_for(executor, 0, (tasks.size() + group - 1) / group, 1, [&](std::size_t i) {
-    if (job.is_stopped()) return;
-    const std::span own = tasks.subspan(i * group, std::min(group, tasks.size() - i * group));
-    std::vector<Unit> units;
-    for (const Task& task : own) units.push_back(task.unit);
-    const std::vector<UnitResult> results = job.render(units);
-    for (std::size_t k = 0; k < own.size(); ++k) job.add(own[k], results[k]);
+    if (!job.is_stopped())
+      job.render_and_add(tasks.subspan(i * group, std::min(group, tasks.size() - i * group)));
   });
 }
 
@@ -60,6 +53,12 @@ bool all_finite(std::span<const float> values) {
 }
 
 }  // namespace
+
+std::size_t tasks_at_once(const Task& task, std::size_t left, std::size_t threads) {
+  const std::size_t unit_samples = std::size_t(task.unit.count) * kTileSide * kTileSide;
+  return std::clamp<std::size_t>(kSamplesAtOnce / unit_samples, 1,
+                                 std::max<std::size_t>(1, left / (8 * threads)));
+}
 
 RenderJob::RenderJob(const Scene& scene, const RenderOptions& options)
     : scene_(scene),
@@ -85,48 +84,49 @@ struct RenderJob::Samples {
   // What they see,
   std::vector<float> values;
   std::unique_ptr<bool[]> is_counted;
+  std::vector<RayCounts> traced;
   // and what they hit.
   std::vector<float> features;
   std::unique_ptr<bool[]> is_hit;
 };
 
 UnitResult RenderJob::render(const Unit& unit) const {
-  return std::move(render(std::span(&unit, 1)).front());
+  const Task task{unit, 0};
+  return std::move(render(std::span(&task, 1)).front());
 }
 
-std::vector<UnitResult> RenderJob::render(std::span<const Unit> units) const {
+std::vector<UnitResult> RenderJob::render(std::span<const Task> tasks) const {
   const auto size_of = [&](const Unit& unit) {
     return film_.grid().area(unit.tile).pixel_count() * static_cast<std::size_t>(unit.count);
   };
   std::size_t count = 0;
-  for (const Unit& unit : units) count += size_of(unit);
+  for (const Task& task : tasks) count += size_of(task.unit);
   Samples samples;
   samples.rays.reserve(count);
   samples.samplers.reserve(count);
   samples.signs.reserve(count);
-  for (const Unit& unit : units) start(unit, samples);
+  for (const Task& task : tasks) start(task.unit, samples);
 
   // See what they see, and what they hit.
   samples.values.resize(count * static_cast<std::size_t>(integrator_->channels()));
   samples.is_counted.reset(new bool[count]);
-  RayCounts rays;
+  samples.traced.resize(count);
   integrator_->sample_many(samples.rays, samples.samplers, samples.values, {samples.is_counted.get(), count},
-                           rays);
+                           samples.traced);
   samples.features.resize(count * features_.channels());
   if (!features_.layers().empty()) {
     samples.is_hit.reset(new bool[count]);
     features_.look(samples.rays, samples.features, {samples.is_hit.get(), count});
-    rays.camera += count;
+    for (RayCounts& traced : samples.traced) ++traced.camera;
   }
 
   std::vector<UnitResult> results;
   std::size_t first = 0;
-  for (const Unit& unit : units) {
+  for (const auto& [unit, index] : tasks) {
     results.push_back({film_.empty_tile(unit.tile)});
     add_up(unit, first, samples, results.back());
     first += size_of(unit);
   }
-  if (!results.empty()) results.front().rays = rays.total();
   return results;
 }
 
@@ -175,12 +175,14 @@ void RenderJob::add_up(const Unit& unit, std::size_t first, const Samples& sampl
   const auto per_pixel = static_cast<std::size_t>(unit.count);
   for (std::size_t k = 0; k < result.sums.pixel_count() * per_pixel; ++k) {
     const std::size_t i = first + k, pixel = k / per_pixel;
+    result.effort.rays += samples.traced[i].total();
+    ++result.effort.samples;
     const bool is_counted = samples.is_counted[i];
     const std::span values = std::span(samples.values).subspan(i * channels, channels);
     const std::span seen =
         std::span(samples.features).subspan(i * features_.channels(), features_.channels());
     if ((is_counted && !all_finite(values)) || !all_finite(seen)) {
-      ++result.dropped;
+      ++result.effort.dropped;
       continue;
     }
     const int sign = samples.signs[i];
@@ -204,11 +206,16 @@ void RenderJob::add_up(const Unit& unit, std::size_t first, const Samples& sampl
 }
 
 void RenderJob::add(const Task& task, const UnitResult& result) {
-  if (!film_.add(task.unit.tile, task.index, result.sums)) return;
-  rays_ += result.rays;
-  dropped_ += result.dropped;
-  samples_ += result.sums.pixel_count() * static_cast<std::size_t>(task.unit.count);
+  if (!film_.add(task.unit.tile, task.index, result.sums, result.effort)) return;
+  rays_ += result.effort.rays;
+  dropped_ += result.effort.dropped;
+  samples_ += result.effort.samples;
   report();
+}
+
+void RenderJob::render_and_add(std::span<const Task> tasks) {
+  const std::vector<UnitResult> results = render(tasks);
+  for (std::size_t i = 0; i < tasks.size(); ++i) add(tasks[i], results[i]);
 }
 
 RenderResult RenderJob::run() {
@@ -258,8 +265,8 @@ void RenderJob::settle_quiet_tiles() {
   const double floor = error_floor(film_), target = options_.noise * options_.noise;
   double sum = 0;
   for (std::size_t tile = 0; tile < is_settled_.size(); ++tile) {
-    const auto [error, pixels] = film_.with_tile(tile, [&](const TileSums& sums, std::uint64_t) {
-      return std::pair(tile_error(sums, floor), static_cast<double>(sums.pixel_count()));
+    const auto [error, pixels] = film_.with_tile(tile, [&](const Film::Tile& held) {
+      return std::pair(tile_error(held.sums, floor), static_cast<double>(held.sums.pixel_count()));
     });
     sum += error;
     if (samples >= kLeastToSettle && options_.noise > 0 && error <= target * pixels) is_settled_[tile] = 1;
@@ -277,8 +284,8 @@ double RenderJob::forecast() const {
   double expected = static_cast<double>(samples_);
   for (std::size_t tile = 0; tile < is_settled_.size(); ++tile) {
     if (is_settled_[tile]) continue;
-    const auto [error, pixels] = film_.with_tile(tile, [&](const TileSums& sums, std::uint64_t) {
-      return std::pair(tile_error(sums, floor), static_cast<double>(sums.pixel_count()));
+    const auto [error, pixels] = film_.with_tile(tile, [&](const Film::Tile& held) {
+      return std::pair(tile_error(held.sums, floor), static_cast<double>(held.sums.pixel_count()));
     });
     const double wanted = std::max<double>(kLeastToSettle, samples * error / (target * pixels));
     expected += pixels * std::max(0.0, std::min<double>(wanted, limit) - samples);
@@ -313,15 +320,18 @@ Image RenderJob::picture_with_layers() const {
 }
 
 RenderJob::State RenderJob::state() const {
-  return {round_, is_settled_, rays_, dropped_, samples_, noise_};
+  return {round_, is_settled_, noise_};
 }
 
 void RenderJob::restore(const State& state) {
   round_ = state.round;
   is_settled_ = state.is_settled;
-  rays_ = state.rays;
-  dropped_ = state.dropped;
-  samples_ = state.samples;
+  Effort effort;
+  for (std::size_t tile = 0; tile < is_settled_.size(); ++tile)
+    film_.with_tile(tile, [&effort](const Film::Tile& held) { effort += held.effort; });
+  rays_ = effort.rays;
+  dropped_ = effort.dropped;
+  samples_ = effort.samples;
   noise_ = state.noise;
   samples_expected_ = forecast();
 }

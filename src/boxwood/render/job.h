@@ -23,7 +23,7 @@ namespace boxwood::render {
 /// What the samples of one unit brought.
 struct UnitResult {
   TileSums sums;
-  std::uint64_t rays = 0, dropped = 0;
+  Effort effort = {};
 };
 
 /// A unit of the present round, and its number among those of its tile.
@@ -31,6 +31,10 @@ struct Task {
   Unit unit;
   int index;
 };
+
+/// How many tasks like this one each of `threads` best takes at once when so many are left: enough that many
+/// paths go on together, but not so many that some threads run out of work long before the others.
+std::size_t tasks_at_once(const Task& task, std::size_t left, std::size_t threads);
 
 class RenderJob {
  public:
@@ -52,9 +56,10 @@ class RenderJob {
   /// A unit that was handed in before is ignored. Any thread.
   UnitResult render(const Unit& unit) const;
   /// Renders several at once, which is faster: their paths go on together (path.h). The results are those of
-  /// each alone, but that the first one has the rays of all.
-  std::vector<UnitResult> render(std::span<const Unit> units) const;
+  /// each alone.
+  std::vector<UnitResult> render(std::span<const Task> tasks) const;
   void add(const Task& task, const UnitResult& result);
+  void render_and_add(std::span<const Task> tasks);
   bool is_stopped() const { return is_stopped_; }
 
   /// The picture as it stands: the mode's own channels alone, or all layers. Any thread, at any time.
@@ -65,10 +70,11 @@ class RenderJob {
   struct State {
     Round round;
     std::vector<std::uint8_t> is_settled;  ///< For each tile: it gets no more samples.
-    std::uint64_t rays = 0, dropped = 0, samples = 0;
     std::optional<double> noise;
   };
   State state() const;
+  /// All that was done so far. Any thread, at any time.
+  Effort effort() const { return {rays_, samples_, dropped_}; }
   /// The present round. Steady during a round.
   const Round& round() const { return round_; }
   const Film& film() const { return film_; }

@@ -36,7 +36,7 @@ const LayerFacts& facts_of(Layer layer) {
 /// What a camera ray gets to see.
 struct Seen {
   Surface surface;
-  InstanceId instance;
+  Hit hit;
   float distance;  // from the ray's start; directions are of unit length
 };
 
@@ -49,9 +49,10 @@ std::optional<Seen> first_seen(const Scene& scene, Ray ray, Hit hit) {
   for (int veil = 0; hit && veil < kMaxVeils; ++veil) {
     const Surface surface = surface_at(scene, ray, hit);
     const Material& material = material_of(desc, surface.material);
-    const bool is_seen = !is_see_through(material) || (material.kind != Material::Kind::clear &&
-                                                       opacity_at(desc, material, surface.uv) >= 0.5f);
-    if (is_seen) return Seen{surface, hit.instance_id, before + hit.t};
+    const bool is_seen =
+        !is_see_through(material) || (material.kind != Material::Kind::clear &&
+                                      opacity_at(desc, material, TexturePoint(scene, hit, surface)) >= 0.5f);
+    if (is_seen) return Seen{surface, hit, before + hit.t};
     before += hit.t;
     ray = surface.spawn(ray.direction);
     hit = scene.closest_hit(ray);
@@ -118,7 +119,8 @@ void Features::look(std::span<const Ray> rays, std::span<float> values, std::spa
       else if (!seen)
         put({0, 0, 0});
       else if (layer == Layer::albedo)
-        put(base_color(desc, material_of(desc, seen->surface.material), seen->surface.uv));
+        put(base_color(desc, material_of(desc, seen->surface.material),
+                       TexturePoint(scene_, seen->hit, seen->surface)));
       else
         put(layer == Layer::normal ? seen->surface.shading_normal : seen->surface.position);
     }
@@ -128,7 +130,7 @@ void Features::look(std::span<const Ray> rays, std::span<float> values, std::spa
 float name_of_hit(const Scene& scene, const Ray& ray, Layer layer) {
   const std::optional<Seen> seen = first_seen(scene, ray, scene.closest_hit(ray));
   if (!seen) return 0;
-  if (layer == Layer::object) return static_cast<float>(seen->instance.value + 1);
+  if (layer == Layer::object) return static_cast<float>(seen->hit.instance_id.value + 1);
   return seen->surface.material.is_valid() ? static_cast<float>(seen->surface.material.value + 1) : 0;
 }
 

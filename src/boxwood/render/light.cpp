@@ -297,7 +297,7 @@ Vec3 Lights::emission(const Surface& surface, Vec3 direction) const {
   const Material& material = material_of(scene_.description(), surface.material);
   const bool is_front = dot(surface.normal, direction) < 0;
   if (!is_emissive(material) || (!is_front && !material.emits_from_both_sides)) return {};
-  return emission_at(scene_.description(), material, surface.uv);
+  return emission_at(scene_.description(), material, TexturePoint(surface));
 }
 
 float Lights::pdf(const Hit& hit, const Surface& surface, Vec3 direction, const Receiver& from) const {

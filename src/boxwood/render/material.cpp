@@ -1,7 +1,6 @@
 #include "boxwood/render/material.h"
 
 #include "boxwood/render/fresnel.h"
-#include "boxwood/render/texture.h"
 
 namespace boxwood::render {
 namespace {
@@ -15,9 +14,12 @@ Vec3 clamp01(Vec3 color) {
   return min(max(color, {0, 0, 0}), {1, 1, 1});
 }
 
-float number_at(const SceneDesc& desc, const NumberTexture& number, Vec2 uv) {
+/// Numbers are looked up at the point, however wide a square is looked at.
+float number_at(const SceneDesc& desc, const NumberTexture& number, const TexturePoint& point) {
   if (!number.texture.is_valid()) return 1;
-  const Texel texel = texture_at(desc, number.texture, uv);
+  TexturePoint sharp = point;
+  sharp.width = sharp.second_width = 0;
+  const Texel texel = texture_at(desc, number.texture, sharp);
   switch (number.channel) {
     case NumberTexture::Channel::red:
       return texel.color.x;
@@ -33,8 +35,8 @@ float number_at(const SceneDesc& desc, const NumberTexture& number, Vec2 uv) {
   return (texel.color.x + texel.color.y + texel.color.z) / 3;
 }
 
-Vec3 color_at(const SceneDesc& desc, Vec3 color, TextureId texture, Vec2 uv, float width = 0) {
-  return texture.is_valid() ? color * texture_at(desc, texture, uv, width).color : color;
+Vec3 color_at(const SceneDesc& desc, Vec3 color, TextureId texture, const TexturePoint& point) {
+  return texture.is_valid() ? color * texture_at(desc, texture, point).color : color;
 }
 
 float alpha_of(float roughness, Material::RoughnessScale scale) {
@@ -66,22 +68,22 @@ const Material& material_of(const SceneDesc& desc, MaterialId id) {
   return id.is_valid() ? desc.materials[id.value] : kDefault;
 }
 
-Vec3 base_color(const SceneDesc& desc, const Material& material, Vec2 uv, float width) {
+Vec3 base_color(const SceneDesc& desc, const Material& material, const TexturePoint& point) {
   if (material.kind == Kind::mix) {
-    const float share = mix_share(desc, material, uv);
-    return base_color(desc, material_of(desc, material.first), uv, width) * (1 - share) +
-           base_color(desc, material_of(desc, material.second), uv, width) * share;
+    const float share = mix_share(desc, material, point);
+    return base_color(desc, material_of(desc, material.first), point) * (1 - share) +
+           base_color(desc, material_of(desc, material.second), point) * share;
   }
-  return clamp01(color_at(desc, material.color, material.color_texture, uv, width));
+  return clamp01(color_at(desc, material.color, material.color_texture, point));
 }
 
-Vec3 emission_at(const SceneDesc& desc, const Material& material, Vec2 uv) {
-  return color_at(desc, material.emission, material.emission_texture, uv);
+Vec3 emission_at(const SceneDesc& desc, const Material& material, const TexturePoint& point) {
+  return color_at(desc, material.emission, material.emission_texture, point);
 }
 
-float opacity_at(const SceneDesc& desc, const Material& material, Vec2 uv) {
+float opacity_at(const SceneDesc& desc, const Material& material, const TexturePoint& point) {
   if (material.kind == Kind::clear) return 0;
-  const float opacity = material.opacity * number_at(desc, material.opacity_texture, uv);
+  const float opacity = material.opacity * number_at(desc, material.opacity_texture, point);
   if (material.alpha_cutoff >= 0) return opacity >= material.alpha_cutoff ? 1 : 0;
   return min(max(opacity, 0.0f), 1.0f);
 }
@@ -92,6 +94,7 @@ PreparedMaterial::PreparedMaterial(const Material& material)
       is_see_through(render::is_see_through(material)),
       has_color_texture(material.color_texture.is_valid()),
       has_normal_texture(material.normal_texture.is_valid()),
+      has_coat(material.kind == Kind::layered && material.coat > 0),
       is_plain(false),
       color(clamp01(material.color)),
       alpha(alpha_of(material.roughness, material.roughness_scale)),
@@ -118,7 +121,7 @@ PreparedMaterial::PreparedMaterial(const Material& material)
                                      : table(Lobe::glass, ior, alpha, is_varied);
     if (!material.is_thin) glass_inside = table(Lobe::glass, 1 / ior, alpha, is_varied);
   }
-  if (is_layered && material.coat > 0)
+  if (has_coat)
     clear_coat = table(Lobe::coat, 1.5f,
                        alpha_of(material.coat_roughness, Material::RoughnessScale::square_root_of_alpha),
                        material.coat_roughness_texture.texture.is_valid());
@@ -127,51 +130,51 @@ PreparedMaterial::PreparedMaterial(const Material& material)
                   material.sheen_roughness_texture.texture.is_valid());
 }
 
-Look look_at(const SceneDesc& desc, const Material& m, const PreparedMaterial& prepared, Vec2 uv,
-             float width) {
+Look look_at(const SceneDesc& desc, const Material& m, const PreparedMaterial& prepared,
+             const TexturePoint& point) {
   Look look{};
   look.kind = m.kind;
   look.prepared = &prepared;
-  look.color = clamp01(color_at(desc, m.color, m.color_texture, uv, width));
+  look.color = clamp01(color_at(desc, m.color, m.color_texture, point));
   look.ior = prepared.ior;
   if (m.kind == Kind::matte) return look;
 
   look.alpha = m.kind == Kind::mirror
                    ? 0
-                   : alpha_of(m.roughness * number_at(desc, m.roughness_texture, uv), m.roughness_scale);
+                   : alpha_of(m.roughness * number_at(desc, m.roughness_texture, point), m.roughness_scale);
   look.metal_eta = m.metal_eta;
   look.metal_k = m.metal_k;
   look.reflection_color = clamp01(m.reflection_color);
   look.transmission_color =
-      clamp01(color_at(desc, m.transmission_color, m.transmission_color_texture, uv, width));
+      clamp01(color_at(desc, m.transmission_color, m.transmission_color_texture, point));
   look.is_thin = m.is_thin;
   if (m.kind != Kind::layered) return look;
 
   const auto share = [&](float value, const NumberTexture& texture) {
-    return min(max(value * number_at(desc, texture, uv), 0.0f), 1.0f);
+    return min(max(value * number_at(desc, texture, point), 0.0f), 1.0f);
   };
   look.metalness = share(m.metalness, m.metalness_texture);
   look.transmission = share(m.transmission, m.transmission_texture);
   look.specular = share(m.specular, m.specular_texture);
-  look.specular_color = color_at(desc, m.specular_color, m.specular_color_texture, uv, width);
+  look.specular_color = color_at(desc, m.specular_color, m.specular_color_texture, point);
   look.coat = share(m.coat, m.coat_texture);
-  look.coat_alpha = alpha_of(m.coat_roughness * number_at(desc, m.coat_roughness_texture, uv),
+  look.coat_alpha = alpha_of(m.coat_roughness * number_at(desc, m.coat_roughness_texture, point),
                              Material::RoughnessScale::square_root_of_alpha);
-  look.sheen_color = clamp01(color_at(desc, m.sheen_color, m.sheen_color_texture, uv, width));
+  look.sheen_color = clamp01(color_at(desc, m.sheen_color, m.sheen_color_texture, point));
   const float sheen_roughness = share(m.sheen_roughness, m.sheen_roughness_texture);
   look.sheen_alpha = max(sheen_roughness * sheen_roughness, kSmoothAlpha);
   return look;
 }
 
-float mix_share(const SceneDesc& desc, const Material& mix, Vec2 uv) {
-  return min(max(mix.mix_amount * number_at(desc, mix.mix_texture, uv), 0.0f), 1.0f);
+float mix_share(const SceneDesc& desc, const Material& mix, const TexturePoint& point) {
+  return min(max(mix.mix_amount * number_at(desc, mix.mix_texture, point), 0.0f), 1.0f);
 }
 
-MaterialId choose_material(const SceneDesc& desc, MaterialId id, Vec2 uv, float choice) {
+MaterialId choose_material(const SceneDesc& desc, MaterialId id, const TexturePoint& point, float choice) {
   // Mixes of mixes: what is left of the choice chooses again.
   while (id.is_valid() && desc.materials[id.value].kind == Kind::mix) {
     const Material& mix = desc.materials[id.value];
-    const float share = mix_share(desc, mix, uv);
+    const float share = mix_share(desc, mix, point);
     const bool is_second = choice < share;
     choice = is_second ? choice / share : (choice - share) / (1 - share);
     choice = min(choice, 0x1.fffffep-1f);

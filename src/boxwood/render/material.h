@@ -7,22 +7,21 @@
 #include <vector>
 
 #include "boxwood/render/albedo_table.h"
-#include "boxwood/scene/description.h"
+#include "boxwood/render/texture.h"
 
 namespace boxwood::render {
 
 /// The material that `id` names; grey and matte for none.
 const Material& material_of(const SceneDesc& desc, MaterialId id);
 
-/// The material's color times its texture at `uv`, kept within [0, 1]: no surface reflects more than it gets.
-/// `width` is as for texture_at (texture.h).
-Vec3 base_color(const SceneDesc& desc, const Material& material, Vec2 uv, float width = 0);
+/// The material's color times its texture, kept within [0, 1]: no surface reflects more than it gets.
+Vec3 base_color(const SceneDesc& desc, const Material& material, const TexturePoint& point);
 
-/// The radiance that the front side sends out at `uv`.
-Vec3 emission_at(const SceneDesc& desc, const Material& material, Vec2 uv);
+/// The radiance that the front side sends out.
+Vec3 emission_at(const SceneDesc& desc, const Material& material, const TexturePoint& point);
 
-/// The share of light that meets the surface at `uv`; the rest goes straight on.
-float opacity_at(const SceneDesc& desc, const Material& material, Vec2 uv);
+/// The share of light that meets the surface; the rest goes straight on.
+float opacity_at(const SceneDesc& desc, const Material& material, const TexturePoint& point);
 
 inline bool is_emissive(const Material& material) {
   return max_component(material.emission) > 0;
@@ -38,7 +37,7 @@ inline bool is_see_through(const Material& material) {
 struct PreparedMaterial {
   explicit PreparedMaterial(const Material& material);
 
-  bool is_emissive, is_mix, is_see_through, has_color_texture, has_normal_texture;
+  bool is_emissive, is_mix, is_see_through, has_color_texture, has_normal_texture, has_coat;
   /// Plain: a matte base, bare or under a clear boundary whose roughness is the same everywhere and above 0.
   /// What most surfaces are (plain_block.h).
   bool is_plain;
@@ -69,13 +68,13 @@ struct Look {
 };
 
 /// Looks up all textures of `material`, which is not a mix. `prepared` must outlive the result.
-Look look_at(const SceneDesc& desc, const Material& material, const PreparedMaterial& prepared, Vec2 uv,
-             float width = 0);
+Look look_at(const SceneDesc& desc, const Material& material, const PreparedMaterial& prepared,
+             const TexturePoint& point);
 
 /// The share of the second of a mix's two materials.
-float mix_share(const SceneDesc& desc, const Material& mix, Vec2 uv);
+float mix_share(const SceneDesc& desc, const Material& mix, const TexturePoint& point);
 
 /// Follows mixes down to the material that `choice` picks, uniform in [0, 1).
-MaterialId choose_material(const SceneDesc& desc, MaterialId id, Vec2 uv, float choice);
+MaterialId choose_material(const SceneDesc& desc, MaterialId id, const TexturePoint& point, float choice);
 
 }  // namespace boxwood::render

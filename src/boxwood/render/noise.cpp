@@ -35,9 +35,9 @@ double tile_error(const TileSums& sums, double floor) {
 double error_floor(const Film& film) {
   double sum = 0;
   for (std::size_t tile = 0; tile < film.grid().size(); ++tile)
-    film.with_tile(tile, [&sum](const TileSums& sums, std::uint64_t) {
-      for (std::size_t pixel = 0; pixel < sums.pixel_count(); ++pixel)
-        if (const std::optional<PixelNoise> found = pixel_noise(sums, pixel)) sum += found->brightness;
+    film.with_tile(tile, [&sum](const Film::Tile& held) {
+      for (std::size_t pixel = 0; pixel < held.sums.pixel_count(); ++pixel)
+        if (const std::optional<PixelNoise> found = pixel_noise(held.sums, pixel)) sum += found->brightness;
     });
   const double mean = sum / (double(film.grid().width) * film.grid().height);
   return 0.01 * mean * mean;

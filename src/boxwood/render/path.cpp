@@ -93,22 +93,24 @@ class PathTracer final : public Integrator {
 
   bool sample(const Ray& ray, Sampler& sampler, std::span<float> out, RayCounts& rays) const override {
     bool is_counted = false;
-    sample_many({&ray, 1}, {&sampler, 1}, out, {&is_counted, 1}, rays);
+    sample_many({&ray, 1}, {&sampler, 1}, out, {&is_counted, 1}, {&rays, 1});
     return is_counted;
   }
 
   void sample_many(std::span<const Ray> camera_rays, std::span<Sampler> samplers, std::span<float> out,
-                   std::span<bool> is_counted, RayCounts& rays) const override {
+                   std::span<bool> is_counted, std::span<RayCounts> rays) const override {
     std::fill(out.begin(), out.end(), 0.0f);
     std::fill(is_counted.begin(), is_counted.end(), true);
-    Work work(std::min(camera_rays.size(), kPaths), out);
+    Work work(std::min(camera_rays.size(), kPaths), out, rays);
     PathBatch& batch = work.batch;
     for (std::size_t started = 0;;) {
       // New paths take the places of those that have come to their end: batches stay full.
       const std::size_t old_count = batch.front.size();
-      for (; started < camera_rays.size() && !batch.is_full(); ++started)
+      for (; started < camera_rays.size() && !batch.is_full(); ++started) {
         batch.start(Path(samplers[started], static_cast<std::uint32_t>(started), pixel_angle_),
                     camera_rays[started]);
+        ++rays[started].camera;
+      }
       const std::size_t count = batch.front.size();
       if (count == 0) break;
 
@@ -117,8 +119,6 @@ class PathTracer final : public Integrator {
       const std::span hits = std::span(batch.hits).first(count);
       scene_.closest_hit(front_rays.first(old_count), hits.first(old_count), &serial_executor());
       scene_.closest_hit(front_rays.subspan(old_count), hits.subspan(old_count), &serial_executor());
-      rays.bounce += old_count;
-      rays.camera += count - old_count;
 
       // Let each go on from there, material by material.
       batch.next.clear();
@@ -138,7 +138,8 @@ class PathTracer final : public Integrator {
  private:
   /// The memory of one call.
   struct Work {
-    Work(std::size_t size, std::span<float> samples) : batch(size), order(size), light(size), out(samples) {}
+    Work(std::size_t size, std::span<float> samples, std::span<RayCounts> counts)
+        : batch(size), order(size), light(size), out(samples), rays(counts) {}
     void gather(std::uint32_t sample, Vec3 light) {
       float* sum = &out[3 * std::size_t(sample)];
       sum[0] += light.x;
@@ -146,11 +147,19 @@ class PathTracer final : public Integrator {
       sum[2] += light.z;
     }
 
+    /// A path ends; its first ray came from the camera.
+    void end(std::uint32_t place) {
+      const Path& path = batch[place];
+      rays[path.sample].bounce += path.steps - 1u;
+      batch.end(place);
+    }
+
     PathBatch batch;
     std::vector<std::uint32_t> order;  // in which hits are looked at
     Step step;
     AwaitedLight light;
-    std::span<float> out;  // three floats for each sample
+    std::span<float> out;       // three floats for each sample
+    std::span<RayCounts> rays;  // of each
   };
 
   /// Puts hits in an order in which equal materials follow each other: the processor then foresees branches
@@ -176,10 +185,11 @@ class PathTracer final : public Integrator {
   void escape(Work& work, std::uint32_t position) const {
     const std::uint32_t place = work.batch.front.place(position);
     Path& path = work.batch[place];
+    ++path.steps;
     const Vec3 direction = work.batch.front.rays()[position].direction;
     if (max_component(path.absorption) > 0) path.throughput *= beer(path.absorption, kInfinity);
     work.gather(path.sample, path.throughput * background(direction, path, work.batch.left_from(place)));
-    work.batch.end(place);
+    work.end(place);
   }
 
   /// Up to a block of paths look at what they hit, ask for light, and go on. Those `ahead` come next.
@@ -242,7 +252,7 @@ class PathTracer final : public Integrator {
       work.light.add_careful(path.sample, step.next.light[i], step.lights.shadow_rays[i], path.absorption);
     }
     for (const int i : onward) go_on(batch, step, i);
-    for (const int i : ending) batch.end(step.places[i]);
+    for (const int i : ending) work.end(step.places[i]);
   }
 
   /// Takes a path to what its ray hit, point `i` of the step.
@@ -259,22 +269,24 @@ class PathTracer final : public Integrator {
     path.cone_width += path.cone_angle * hit.t;
 
     MaterialId id = step.surfaces.material[i];
-    const Vec2 uv = step.surfaces.uv[i];
+    TexturePoint point{step.surfaces.uv[i], step.surfaces.second_uv[i]};
+    point.color = surfaces_.vertex_color(hit);
     const PreparedMaterial* prepared = &this->prepared(id);
     if (prepared->is_emissive) gather_emission(work, place, ray.direction, hit, step.surfaces[i]);
-    if (path.bounce == kMaxBounces || ++path.steps == kMaxSteps) {
-      work.batch.end(place);
+    ++path.steps;
+    if (path.bounce == kMaxBounces || path.steps == kMaxSteps) {
+      work.end(place);
       return Kind::none;
     }
 
     // Which material it is, where it is several; and whether the light meets it at all.
     if (prepared->is_mix) {
-      id = choose_material(desc, id, uv, path.sampler.next_1d());
+      id = choose_material(desc, id, point, path.sampler.next_1d());
       prepared = &this->prepared(id);
     }
     const Material& material = material_of(desc, id);
     if (prepared->is_see_through) {
-      const float opacity = opacity_at(desc, material, uv);
+      const float opacity = opacity_at(desc, material, point);
       if (opacity < 1 && (opacity <= 0 || !(path.sampler.next_1d() < opacity))) {
         const Surface surface = step.surfaces[i];
         enter(path, material, surface.normal, ray.direction);
@@ -290,12 +302,17 @@ class PathTracer final : public Integrator {
     step.paths.throughput.set(i, path.throughput);
     step.is_in_medium[i] = max_component(path.absorption) > 0;
     step.paths.in_roulette[i] = path.bounce >= kRouletteAfter;
-    const float uv_width = prepared->has_color_texture ? path.cone_width * step.surfaces.uv_density[i] : 0.0f;
-    const Vec3 normal = prepared->has_normal_texture ? mapped_normal(scene_, hit, step.surfaces[i], material)
-                                                     : step.surfaces.shading_normal[i];
+    if (prepared->has_color_texture) {
+      point.width = path.cone_width * step.surfaces.uv_density[i];
+      point.second_width = path.cone_width * step.surfaces.second_uv_density[i];
+    }
+    const Vec3 normal =
+        prepared->has_normal_texture
+            ? mapped_normal(scene_, hit, step.surfaces[i], material.normal_texture, material.normal_scale)
+            : step.surfaces.shading_normal[i];
     const Vec3 outgoing = -ray.direction;
     const Vec3 color = !prepared->is_plain           ? Vec3{0, 0, 0}
-                       : prepared->has_color_texture ? base_color(desc, material, uv, uv_width)
+                       : prepared->has_color_texture ? base_color(desc, material, point)
                                                      : prepared->color;
     // (A black base has no lobe.)
     if (max_component(color) > 0) {
@@ -305,8 +322,12 @@ class PathTracer final : public Integrator {
       step.paths.is_spread[i] = 1;
       return Kind::plain;
     }
-    step.looks[i] = look_at(desc, material, *prepared, uv, uv_width);
-    const Bsdf& bsdf = step.bsdfs[i].emplace(step.looks[i], step.surfaces[i], normal, outgoing);
+    step.looks[i] = look_at(desc, material, *prepared, point);
+    const Vec3 coat_normal = prepared->has_coat
+                                 ? mapped_normal(scene_, hit, step.surfaces[i], material.coat_normal_texture,
+                                                 material.coat_normal_scale)
+                                 : normal;
+    const Bsdf& bsdf = step.bsdfs[i].emplace(step.looks[i], step.surfaces[i], normal, outgoing, coat_normal);
     step.receivers.normal.set(i, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
     step.paths.is_spread[i] = bsdf.has_spread();
     return Kind::other;

@@ -25,8 +25,8 @@ struct alignas(64) Path {
   Vec3 throughput{1, 1, 1};
   Vec3 absorption{0, 0, 0};  ///< Of what the ray is in.
   float cone_width = 0, cone_angle;
-  float pdf = 0;  ///< Of the direction that it took last.
-  std::uint16_t bounce = 0, steps = 0;
+  float pdf = 0;                        ///< Of the direction that it took last.
+  std::uint16_t bounce = 0, steps = 0;  ///< A step: what a ray of the path hit, or that it hit nothing.
   /// Next-event estimation could not have found what this direction finds; true at the camera.
   bool is_perfect = true;
 };

@@ -27,7 +27,8 @@ Image picture_of(const Film& film, Mode mode, std::span<const Layer> layers) {
 
   for (std::size_t tile = 0; tile < film.grid().size(); ++tile) {
     const TileArea area = film.grid().area(tile);
-    film.with_tile(tile, [&](const TileSums& sums, std::uint64_t) {
+    film.with_tile(tile, [&](const Film::Tile& held) {
+      const TileSums& sums = held.sums;
       std::size_t pixel = 0;
       for (int y = area.y0; y < area.y1; ++y)
         for (int x = area.x0; x < area.x1; ++x, ++pixel) {

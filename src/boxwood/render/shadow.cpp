@@ -10,13 +10,13 @@ namespace boxwood::render {
 namespace {
 
 /// The share of light that goes straight on at a surface; of a mix, the mean of its parts.
-float clear_share(const SceneDesc& desc, MaterialId id, Vec2 uv) {
+float clear_share(const SceneDesc& desc, MaterialId id, const TexturePoint& point) {
   const Material& material = material_of(desc, id);
   if (material.kind != Material::Kind::mix)
-    return is_see_through(material) ? 1 - opacity_at(desc, material, uv) : 0;
-  const float second = mix_share(desc, material, uv);
-  return clear_share(desc, material.first, uv) * (1 - second) +
-         clear_share(desc, material.second, uv) * second;
+    return is_see_through(material) ? 1 - opacity_at(desc, material, point) : 0;
+  const float second = mix_share(desc, material, point);
+  return clear_share(desc, material.first, point) * (1 - second) +
+         clear_share(desc, material.second, point) * second;
 }
 
 constexpr int kMaxSteps = 1024;
@@ -80,7 +80,7 @@ void Shadows::find_veiled(const RayBlock& rays, Integers& may_meet_veil) const {
   for (const Box3& veil : veils_) BOXWOOD_BEST(meet_boxes)(veil, reach_, rays, may_meet_veil);
 }
 
-void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& rays) const {
+void Shadows::deliver(AwaitedLight& light, std::span<float> samples, std::span<RayCounts> rays) const {
   const auto add = [&](const AwaitedLight::Light& to, Vec3 transmittance) {
     float* sum = &samples[3 * std::size_t(to.sample)];
     const Vec3 arrived = to.light * transmittance;
@@ -91,21 +91,22 @@ void Shadows::deliver(AwaitedLight& light, std::span<float> samples, RayCounts& 
   const AwaitedLight::Row &plain = light.plain_, &careful = light.careful_;
   scene_.any_hit(std::span(plain.rays).first(plain.size), {light.is_hidden_.get(), plain.size},
                  &serial_executor());
-  rays.shadow += plain.size;
-  for (std::size_t i = 0; i < plain.size; ++i)
+  for (std::size_t i = 0; i < plain.size; ++i) {
+    ++rays[plain.lights[i].sample].shadow;
     if (!light.is_hidden_[i]) add(plain.lights[i], {1, 1, 1});
+  }
 
   scene_.closest_hit(std::span(careful.rays).first(careful.size), std::span(light.hits_).first(careful.size),
                      &serial_executor());
-  rays.bounce += careful.size;
   for (std::size_t i = 0; i < careful.size; ++i) {
     const Hit& hit = light.hits_[i];
     const Ray& ray = careful.rays[i];
     const AwaitedLight::Light& to = careful.lights[i];
+    ++rays[to.sample].bounce;
     if (!hit)
       add(to, beer(light.absorption_[i], ray.t_max * length(ray.direction)));
     else if (is_veil_[hit.instance_id.value] != 0)
-      add(to, walk(ray, hit, light.absorption_[i], rays));
+      add(to, walk(ray, hit, light.absorption_[i], rays[to.sample]));
   }
 }
 
@@ -120,7 +121,7 @@ Vec3 Shadows::walk(const Ray& way, const Hit& first_hit, Vec3 absorption, RayCou
     left *= beer(absorption, min(hit.t, ray.t_max) * length(ray.direction));
     if (!hit) return left;
     const Surface surface = surface_at(scene_, ray, hit);
-    const float share = clear_share(desc, surface.material, surface.uv);
+    const float share = clear_share(desc, surface.material, TexturePoint(scene_, hit, surface));
     if (!(share > 0) || !(max_component(left) > 0)) return {0, 0, 0};
     left *= share;
 

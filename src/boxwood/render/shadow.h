@@ -74,9 +74,9 @@ class Shadows {
   /// Which rays of a block may meet something that lets light through.
   void find_veiled(const RayBlock& rays, Integers& may_meet_veil) const;
 
-  /// Adds to the three floats that each sample has in `samples` what arrives, and to `rays` those that were
-  /// traced.
-  void deliver(AwaitedLight& light, std::span<float> samples, RayCounts& rays) const;
+  /// Adds to the three floats that each sample has in `samples` what arrives, and to its counts in `rays`
+  /// those that were traced.
+  void deliver(AwaitedLight& light, std::span<float> samples, std::span<RayCounts> rays) const;
 
  private:
   Vec3 walk(const Ray& way, const Hit& first_hit, Vec3 absorption, RayCounts& rays) const;

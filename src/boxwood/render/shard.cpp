@@ -84,9 +84,9 @@ FilmWords words_of(const Film& film) {
   planes.words.resize(std::size_t(grid.width) * std::size_t(grid.height) * per_pixel);
   std::vector<std::uint32_t> words;
   for (std::size_t tile = 0; tile < grid.size(); ++tile) {
-    film.with_tile(tile, [&words](const TileSums& sums, std::uint64_t) {
-      words.resize(sums.word_count());
-      sums.to_words(words);
+    film.with_tile(tile, [&words](const Film::Tile& held) {
+      words.resize(held.sums.word_count());
+      held.sums.to_words(words);
     });
     const TileArea area = grid.area(tile);
     const std::size_t row = std::size_t(area.x1 - area.x0) * per_pixel;

@@ -67,16 +67,26 @@ Rgba texel_of(const Texture& texture, int level, int width, int x, int y) {
   return {{decode[t[0]], decode[t[1]], decode[t[2]]}, kDecode.linear[t[3]]};
 }
 
+/// Far out, where floats have no fraction left, the answer only has to be some texel; what repeats is brought
+/// near first.
+double near(double x, Texture::Wrap how) {
+  if (how == Texture::Wrap::repeat) return x - std::floor(x);
+  return std::min(std::max(x, -1e6), 1e6);
+}
+
+/// The texel of the finest level at `uv`.
+Rgba nearest(const Texture& texture, Vec2 uv) {
+  const double x = near(uv.x, texture.wrap_u) * texture.width;
+  const double y = near(1 - double(uv.y), texture.wrap_v) * texture.height;
+  return texel_of(texture, 0, texture.width,
+                  wrap(static_cast<std::int64_t>(std::floor(x)), texture.width, texture.wrap_u),
+                  wrap(static_cast<std::int64_t>(std::floor(y)), texture.height, texture.wrap_v));
+}
+
 /// The four texels of a level around `uv`, mixed.
 Rgba bilinear(const Texture& texture, int level, Vec2 uv) {
   const int width = std::max(texture.width >> level, 1), height = std::max(texture.height >> level, 1);
-  // Texel centers are at halves. Far out, where floats have no fraction left, the answer only has to be some
-  // texel; what repeats is brought near first.
-  const auto near = [](double x, Texture::Wrap how) {
-    if (how == Texture::Wrap::repeat) return x - std::floor(x);
-    return std::min(std::max(x, -1e6), 1e6);
-  };
-  const double x = near(uv.x, texture.wrap_u) * width - 0.5;
+  const double x = near(uv.x, texture.wrap_u) * width - 0.5;  // texel centers are at halves
   const double y = near(1 - double(uv.y), texture.wrap_v) * height - 0.5;
   const double floor_x = std::floor(x), floor_y = std::floor(y);
   const auto right = static_cast<float>(x - floor_x), down = static_cast<float>(y - floor_y);
@@ -105,47 +115,48 @@ Texel picture_at(const Texture& texture, Vec2 uv, float width) {
   const float level = texels > 1 ? min(std::log2(texels), static_cast<float>(levels - 1)) : 0.0f;
   const int finer = static_cast<int>(level);
   const float share = level - static_cast<float>(finer);
-  Rgba value = bilinear(texture, finer, uv);
+  Rgba value = texture.is_mixed || level > 0 ? bilinear(texture, finer, uv) : nearest(texture, uv);
   if (share > 0) value = value * (1 - share) + bilinear(texture, finer + 1, uv) * share;
   if (texture.is_inverted) value.color = splat(1) - value.color;
   return {value.color, value.alpha};
 }
 
-Texel operand_at(const SceneDesc& desc, const Texture::Operand& operand, Vec2 uv, float width) {
+Texel operand_at(const SceneDesc& desc, const Texture::Operand& operand, const TexturePoint& point) {
   if (!operand.texture.is_valid()) return {operand.color, 1};
-  const Texel texel = texture_at(desc, operand.texture, uv, width);
+  const Texel texel = texture_at(desc, operand.texture, point);
   return {operand.color * texel.color, texel.alpha};
 }
 
 }  // namespace
 
-Texel texture_at(const SceneDesc& desc, TextureId id, Vec2 uv, float width) {
+Texel texture_at(const SceneDesc& desc, TextureId id, const TexturePoint& point) {
   const Texture& texture = desc.textures[id.value];
+  const Vec2 uv = texture.is_by_second_uvs ? point.second_uv : point.uv;
   const Vec2 st{texture.u_axis.x * uv.x + texture.v_axis.x * uv.y + texture.offset.x,
                 texture.u_axis.y * uv.x + texture.v_axis.y * uv.y + texture.offset.y};
   if (!std::isfinite(st.x) || !std::isfinite(st.y)) return {{1, 1, 1}, 1};
   const float scale =
       std::sqrt(std::fabs(texture.u_axis.x * texture.v_axis.y - texture.u_axis.y * texture.v_axis.x));
-  const float own_width = width * scale;
+  const float own_width = (texture.is_by_second_uvs ? point.second_width : point.width) * scale;
 
   switch (texture.kind) {
     case Texture::Kind::picture:
       return picture_at(texture, st, own_width);
+    case Texture::Kind::vertex_color:
+      return {{point.color[0], point.color[1], point.color[2]}, point.color[3]};
     case Texture::Kind::product: {
-      const Texel a = operand_at(desc, texture.first, uv, width),
-                  b = operand_at(desc, texture.second, uv, width);
+      const Texel a = operand_at(desc, texture.first, point), b = operand_at(desc, texture.second, point);
       return {a.color * b.color, a.alpha * b.alpha};
     }
     case Texture::Kind::mix: {
-      const Texel a = operand_at(desc, texture.first, uv, width),
-                  b = operand_at(desc, texture.second, uv, width);
-      const Vec3 share = operand_at(desc, texture.amount, uv, width).color;
+      const Texel a = operand_at(desc, texture.first, point), b = operand_at(desc, texture.second, point);
+      const Vec3 share = operand_at(desc, texture.amount, point).color;
       return {a.color * (splat(1) - share) + b.color * share, a.alpha * (1 - share.x) + b.alpha * share.x};
     }
     case Texture::Kind::checkerboard: {
       const double sum = std::floor(double(st.x)) + std::floor(double(st.y));
       const bool is_first = sum - 2 * std::floor(sum / 2) == 0;
-      return operand_at(desc, is_first ? texture.first : texture.second, uv, width);
+      return operand_at(desc, is_first ? texture.first : texture.second, point);
     }
   }
   return {{1, 1, 1}, 1};

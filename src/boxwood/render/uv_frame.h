@@ -12,11 +12,12 @@ struct UvFrame {
   Vec3 along_u, along_v;
 };
 
-/// Nothing where the hit is not on a mesh with texture coordinates, or they are all the same there.
-std::optional<UvFrame> uv_frame(const Scene& scene, const Hit& hit);
+/// Of the coordinates in which `texture` lies. Nothing where the hit is not on a mesh with texture
+/// coordinates, or they are all the same there.
+std::optional<UvFrame> uv_frame(const Scene& scene, const Hit& hit, const Texture& texture);
 
-/// The normal that a normal map (a material's normal_texture) gives the surface; its shading normal where
-/// there is none.
-Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, const Material& material);
+/// The normal that a normal map gives the surface, its slopes times `scale`; the shading normal where there
+/// is no map.
+Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, TextureId map, float scale);
 
 }  // namespace boxwood::render

@@ -66,6 +66,8 @@ void check_mesh(const TriangleMesh& mesh, const std::string& name, Executor& exe
   };
   check_length(mesh.normals.size(), "normals");
   check_length(mesh.uvs.size(), "texture coordinates");
+  check_length(mesh.second_uvs.size(), "second texture coordinates");
+  check_length(mesh.colors.size(), "colors");
 }
 
 void check_shape_boxes(const auto& shapes, const std::string& name) {

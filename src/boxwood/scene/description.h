@@ -46,8 +46,16 @@ class PictureSource {
 struct TriangleMesh {
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> indices;
-  std::vector<Vec3> normals;  ///< Shading normals: empty, or one for each vertex.
-  std::vector<Vec2> uvs;      ///< Texture coordinates: empty, or one for each vertex; v points up.
+  std::vector<Vec3> normals;          ///< Shading normals: empty, or one for each vertex.
+  std::vector<Vec2> uvs;              ///< Texture coordinates: empty, or one for each vertex; v points up.
+  std::vector<Vec2> second_uvs = {};  ///< Likewise, for textures that ask for them.
+  std::vector<std::array<float, 4>> colors =
+      {};  ///< Linear light and alpha, for textures of that kind: likewise.
+
+  /// Where a texture lies that asks for the first or the second set; the first where there is no second.
+  const std::vector<Vec2>& uvs_for(bool by_second) const {
+    return by_second && !second_uvs.empty() ? second_uvs : uvs;
+  }
 };
 
 /// Shapes of one kind. `primitive_id` is the position in the vector. AnyShape holds users' own kinds.
@@ -68,14 +76,15 @@ struct Instance {
   MaterialId material;  ///< Wins over the geometry's own when given.
 };
 
-/// What lies at a point of a surface: a picture's pixels, or a pattern made of other textures. A color is
-/// followed by its alpha, which is 1 for all but pictures that have one.
+/// What lies at a point of a surface: a picture's pixels, the colors of a mesh's vertices, or a pattern made
+/// of other textures. A color is followed by its alpha, which is 1 where nothing says else.
 struct Texture {
   enum class Kind {
     picture,       ///< `texels`, or `source` where there is one.
     product,       ///< first * second.
     mix,           ///< first * (1 - amount) + second * amount.
     checkerboard,  ///< first and second in turns, a unit of u and v each.
+    vertex_color,  ///< The mesh's own; white where it has none, and on lamps.
   };
   enum class Wrap { repeat, mirror, clamp, black };
 
@@ -94,10 +103,12 @@ struct Texture {
   Kind kind = Kind::picture;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;  ///< Beyond [0, 1].
   bool is_inverted = false;                           ///< 1 - color.
+  bool is_mixed = true;  ///< Between the pixels of a picture; else each is a square of one color.
   Operand first, second, amount;
   /// Texture coordinates from the surface's: (u, v) -> u_axis * u + v_axis * v + offset. For pictures and
   /// checkerboards; operands start from the surface's again.
   Vec2 u_axis{1, 0}, v_axis{0, 1}, offset{0, 0};
+  bool is_by_second_uvs = false;  ///< Pictures and checkerboards: which of the surface's they are.
   std::shared_ptr<const PictureSource> source;  ///< A picture whose pixels stay in its file.
 };
 
@@ -161,6 +172,8 @@ struct Material {
   TextureId specular_color_texture;
   float coat = 0, coat_roughness = 0;  ///< Share of the coat, and its GGX alpha's square root.
   NumberTexture coat_texture, coat_roughness_texture;
+  TextureId coat_normal_texture;  ///< None: the coat is smooth, whatever `normal_texture` does below it.
+  float coat_normal_scale = 1;
   Vec3 sheen_color{0, 0, 0};
   float sheen_roughness = 0;  ///< Its square is the width of the sheen.
   TextureId sheen_color_texture;
@@ -179,6 +192,9 @@ struct Camera {
   float lens_radius = 0;      ///< 0: pinhole.
   float focus_distance = 1;   ///< Along -z, in world units; used when lens_radius > 0.
   int width = 0, height = 0;  ///< The picture's size that the file asks for; 0: no wish.
+  /// Above 0: all rays are parallel, and the shorter side of the picture spans so much of the world. Then
+  /// there is neither an angle nor a lens.
+  float orthographic_size = 0;
 };
 
 /// Light from infinitely far away, by direction: a picture of longitudes and latitudes, all around. Its top
@@ -245,7 +261,7 @@ struct SceneDesc {
 template <class AnyMaterial, class Visit>
 void for_each_texture(AnyMaterial& m, const Visit& visit) {
   for (auto* id : {&m.color_texture, &m.emission_texture, &m.transmission_color_texture, &m.normal_texture,
-                   &m.specular_color_texture, &m.sheen_color_texture})
+                   &m.specular_color_texture, &m.sheen_color_texture, &m.coat_normal_texture})
     visit(*id);
   for (auto* number : {&m.roughness_texture, &m.opacity_texture, &m.metalness_texture,
                        &m.transmission_texture, &m.specular_texture, &m.coat_texture,

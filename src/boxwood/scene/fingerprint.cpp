@@ -106,8 +106,8 @@ void add(Stirrer& stirrer, const AnyShape& shape) {
 }
 
 void add(Stirrer& stirrer, const TriangleMesh& mesh) {
-  const auto& [positions, indices, normals, uvs] = mesh;
-  add_all(stirrer, positions, indices, normals, uvs);
+  const auto& [positions, indices, normals, uvs, second_uvs, colors] = mesh;
+  add_all(stirrer, positions, indices, normals, uvs, second_uvs, colors);
 }
 
 void add(Stirrer& stirrer, const Geometry& geometry) {
@@ -122,10 +122,10 @@ void add(Stirrer& stirrer, const Instance& instance) {
 }
 
 void add(Stirrer& stirrer, const Texture& texture) {
-  const auto& [name, width, height, texels, is_srgb, kind, wrap_u, wrap_v, is_inverted, first, second, amount,
-               u_axis, v_axis, offset, source] = texture;
-  add_all(stirrer, width, height, texels, is_srgb, kind, wrap_u, wrap_v, is_inverted, first, second, amount,
-          u_axis, v_axis, offset);
+  const auto& [name, width, height, texels, is_srgb, kind, wrap_u, wrap_v, is_inverted, is_mixed, first,
+               second, amount, u_axis, v_axis, offset, is_by_second_uvs, source] = texture;
+  add_all(stirrer, width, height, texels, is_srgb, kind, wrap_u, wrap_v, is_inverted, is_mixed, first, second,
+          amount, u_axis, v_axis, offset, is_by_second_uvs);
   if (source) add(stirrer, *source);
 }
 
@@ -157,21 +157,22 @@ void add(Stirrer& stirrer, const Material& material) {
                opacity_texture, alpha_cutoff, normal_texture, normal_scale, metalness, transmission,
                metalness_texture, transmission_texture, specular, specular_color, specular_texture,
                specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture,
-               sheen_color, sheen_roughness, sheen_color_texture, sheen_roughness_texture, mix_first,
-               mix_second, mix_amount, mix_texture] = material;
+               coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness, sheen_color_texture,
+               sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture] = material;
   add_all(stirrer, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides,
           emission_texture, roughness_texture, roughness_scale, metal_eta, metal_k, reflection_color,
           transmission_color, transmission_color_texture, is_thin, absorption, outer_absorption, opacity,
           opacity_texture, alpha_cutoff, normal_texture, normal_scale, metalness, transmission,
           metalness_texture, transmission_texture, specular, specular_color, specular_texture,
-          specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture, sheen_color,
-          sheen_roughness, sheen_color_texture, sheen_roughness_texture, mix_first, mix_second, mix_amount,
-          mix_texture);
+          specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture,
+          coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness, sheen_color_texture,
+          sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture);
 }
 
 void add(Stirrer& stirrer, const Camera& camera) {
-  const auto& [world_from_camera, fov_deg, lens_radius, focus_distance, width, height] = camera;
-  add_all(stirrer, world_from_camera, fov_deg, lens_radius, focus_distance);
+  const auto& [world_from_camera, fov_deg, lens_radius, focus_distance, width, height, orthographic_size] =
+      camera;
+  add_all(stirrer, world_from_camera, fov_deg, lens_radius, focus_distance, orthographic_size);
 }
 
 void add(Stirrer& stirrer, const Sky& sky) {

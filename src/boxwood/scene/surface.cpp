@@ -17,22 +17,21 @@ struct LocalSurface {
   Vec3 position;
   Vec3 error;
   Vec3 shading_normal;  // zero: the geometric one
-  Vec2 uv;
+  Vec2 uv, second_uv;
 };
 
 inline LocalSurface on_triangle(const Triangle& t, float v_weight, float w_weight) {
   const BoundedPoint point = point_of_triangle(t, v_weight, w_weight);
-  return {point.position, point.error, {0, 0, 0}, {v_weight, w_weight}};
+  return {point.position, point.error, {0, 0, 0}, {v_weight, w_weight}, {v_weight, w_weight}};
 }
 
 LocalSurface on_mesh(const TriangleMesh& mesh, const Hit& hit) {
   LocalSurface s = on_triangle(triangle_of(mesh, hit.primitive_id), hit.u, hit.v);
   const auto& [i, j, k] = mesh.indices[hit.primitive_id.value];
-  if (!mesh.uvs.empty()) {
-    const Vec2 a = mesh.uvs[i], b = mesh.uvs[j], c = mesh.uvs[k];
-    const Vec3 uv = blend({a.x, a.y, 0}, {b.x, b.y, 0}, {c.x, c.y, 0}, hit.u, hit.v);
-    s.uv = {uv.x, uv.y};
-  }
+  if (!mesh.uvs.empty()) s.uv = blend(mesh.uvs[i], mesh.uvs[j], mesh.uvs[k], hit.u, hit.v);
+  s.second_uv = mesh.second_uvs.empty()
+                    ? s.uv
+                    : blend(mesh.second_uvs[i], mesh.second_uvs[j], mesh.second_uvs[k], hit.u, hit.v);
   if (!mesh.normals.empty()) {
     const Vec3 n = blend(mesh.normals[i], mesh.normals[j], mesh.normals[k], hit.u, hit.v);
     if (length_squared(n) > 0 && is_finite(n)) s.shading_normal = normalize(n);
@@ -116,8 +115,10 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
                                -kInfinity, kInfinity, {})
                  : PreparedRay(ray, {});
     const Crossing crossing{hit.t, hit.u, hit.v, hit.part};
-    return with_shape(geometry, hit.primitive_id,
-                      [&](const auto& shape) { return on_shape(shape, prepared, crossing); });
+    LocalSurface on = with_shape(geometry, hit.primitive_id,
+                                 [&](const auto& shape) { return on_shape(shape, prepared, crossing); });
+    on.second_uv = on.uv;
+    return on;
   }();
 
   Surface s;
@@ -127,6 +128,7 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   const bool is_smooth = length_squared(local.shading_normal) > 0;
   s.shading_normal = is_smooth ? local.shading_normal : s.normal;
   s.uv = local.uv;
+  s.second_uv = local.second_uv;
   s.material = instance.material.is_valid() ? instance.material
                : geometry.materials.empty() ? geometry.material
                                             : geometry.materials[hit.primitive_id.value];
@@ -159,13 +161,23 @@ Ray Surface::spawn(Vec3 direction, float t_max) const {
   return {position + side * clearance(), 0, direction, t_max};
 }
 
-float uv_density(const Scene& scene, const Hit& hit) {
+std::array<float, 4> vertex_color(const Scene& scene, const Hit& hit) {
   const Scene::Parts& parts = scene.parts();
   const auto* mesh = std::get_if<TriangleMesh>(&parts.desc.geometries[hit.geometry_id.value].shapes);
-  if (mesh == nullptr || mesh->uvs.empty()) return 0;
+  if (mesh == nullptr || mesh->colors.empty()) return {1, 1, 1, 1};
+  const auto& [i, j, k] = mesh->indices[hit.primitive_id.value];
+  return blend(mesh->colors[i], mesh->colors[j], mesh->colors[k], hit.u, hit.v);
+}
+
+float uv_density(const Scene& scene, const Hit& hit, bool of_second) {
+  const Scene::Parts& parts = scene.parts();
+  const auto* mesh = std::get_if<TriangleMesh>(&parts.desc.geometries[hit.geometry_id.value].shapes);
+  if (mesh == nullptr) return 0;
+  const std::vector<Vec2>& uvs = mesh->uvs_for(of_second);
+  if (uvs.empty()) return 0;
   const auto& [i, j, k] = mesh->indices[hit.primitive_id.value];
   const Affine3& world_from_object = parts.instances[hit.instance_id.value].world_from_object;
-  const Vec2 a = mesh->uvs[i], b = mesh->uvs[j], c = mesh->uvs[k];
+  const Vec2 a = uvs[i], b = uvs[j], c = uvs[k];
   return uv_density_of(world_from_object.vector(mesh->positions[j] - mesh->positions[i]),
                        world_from_object.vector(mesh->positions[k] - mesh->positions[i]),
                        {b.x - a.x, b.y - a.y}, {c.x - a.x, c.y - a.y});

@@ -13,6 +13,7 @@ struct Surface {
   Vec3 shading_normal;  ///< Interpolated where the mesh has normals, on the same side as `normal`; else
                         ///< `normal`.
   Vec2 uv;              ///< Interpolated where the mesh has them; else the hit's u, v.
+  Vec2 second_uv;       ///< Of the second set where the mesh has one; else `uv`.
   MaterialId material;  ///< None: the default material.
 
   /// A ray from here along `direction` that cannot hit the primitive it leaves, at any scale: the origin is
@@ -26,7 +27,11 @@ struct Surface {
 /// Works out the place of `hit`, which `scene` returned for `ray`. Precondition: hit.is_hit().
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
 
-/// How much of uv, on a side, a square of the world of side 1 covers there; 0 where it is not known.
-float uv_density(const Scene& scene, const Hit& hit);
+/// The color and alpha of the mesh's vertices there; white where it has none.
+std::array<float, 4> vertex_color(const Scene& scene, const Hit& hit);
+
+/// How much of uv, on a side, a square of the world of side 1 covers there; 0 where it is not known. Of the
+/// first set or the second.
+float uv_density(const Scene& scene, const Hit& hit, bool of_second = false);
 
 }  // namespace boxwood

@@ -21,7 +21,7 @@ inline void place_block(const Corners& __restrict corners, SurfaceBlock& __restr
   for (int i = 0; i < kBlock; ++i) {
     const float v = corners.weights.x[i], w = corners.weights.y[i];
     const Vec2 a = corners.uvs[0][i], b = corners.uvs[1][i], c = corners.uvs[2][i];
-    const Vec3 uv = blend({a.x, a.y, 0}, {b.x, b.y, 0}, {c.x, c.y, 0}, v, w);
+    const Vec2 uv = blend(a, b, c, v, w);
     const bool has_uvs = corners.has_uvs[i] != 0;
     out.uv.set(i, {has_uvs ? uv.x : v, has_uvs ? uv.y : w});
     const Vec3 p = corners.positions[0][i];
@@ -29,4 +29,7 @@ inline void place_block(const Corners& __restrict corners, SurfaceBlock& __restr
                                         {b.x - a.x, b.y - a.y}, {c.x - a.x, c.y - a.y});
     out.uv_density[i] = has_uvs ? density : 0.0f;
   }
+  // A mesh with a second set is not for this loop.
+  out.second_uv = out.uv;
+  out.second_uv_density = out.uv_density;
 }

@@ -16,6 +16,7 @@ void SurfaceBlock::set(int i, const Surface& surface) {
   normal.set(i, surface.normal);
   shading_normal.set(i, surface.shading_normal);
   uv.set(i, surface.uv);
+  second_uv.set(i, surface.second_uv);
   clearance[i] = surface.clearance();
   material[i] = surface.material;
 }
@@ -35,6 +36,8 @@ SurfaceReader::SurfaceReader(const Scene& scene) : scene_(scene) {
       mesh.positions = triangles->positions.data();
       if (!triangles->normals.empty()) mesh.normals = triangles->normals.data();
       if (!triangles->uvs.empty()) mesh.uvs = triangles->uvs.data();
+      mesh.has_colors = !triangles->colors.empty();
+      if (!triangles->second_uvs.empty()) mesh.second_uvs = triangles->second_uvs.data();
     }
   }
 }
@@ -64,7 +67,7 @@ void SurfaceReader::read(std::span<const Ray> rays, std::span<const Hit> hits,
   for (int i = 0; i < count; ++i) {
     const Hit& hit = hits[which[i]];
     const Mesh& mesh = meshes_[hit.instance_id.value];
-    is_any_other |= mesh.indices == nullptr || mesh.is_moved;
+    is_any_other |= mesh.indices == nullptr || mesh.is_moved || mesh.second_uvs != nullptr;
     out.normal.set(i, hit.normal);
     if (mesh.indices == nullptr) continue;
     out.material[i] = mesh.materials != nullptr ? mesh.materials[hit.primitive_id.value] : mesh.material;
@@ -83,10 +86,17 @@ void SurfaceReader::read(std::span<const Ray> rays, std::span<const Hit> hits,
   // What the loop does not know, one by one.
   for (int i = 0; i < count && is_any_other; ++i) {
     const std::uint32_t at = which[i];
-    const Mesh& mesh = meshes_[hits[at].instance_id.value];
-    if (mesh.indices != nullptr && !mesh.is_moved) continue;
-    out.set(i, surface_at(scene_, rays[at], hits[at]));
-    out.uv_density[i] = uv_density(scene_, hits[at]);
+    const Hit& hit = hits[at];
+    const Mesh& mesh = meshes_[hit.instance_id.value];
+    if (mesh.indices == nullptr || mesh.is_moved) {
+      out.set(i, surface_at(scene_, rays[at], hit));
+      out.uv_density[i] = uv_density(scene_, hit);
+      out.second_uv_density[i] = uv_density(scene_, hit, true);
+    } else if (mesh.second_uvs != nullptr) {
+      const auto& [a, b, c] = mesh.indices[hit.primitive_id.value];
+      out.second_uv.set(i, blend(mesh.second_uvs[a], mesh.second_uvs[b], mesh.second_uvs[c], hit.u, hit.v));
+      out.second_uv_density[i] = uv_density(scene_, hit, true);
+    }
   }
 }
 

@@ -13,13 +13,14 @@ namespace boxwood {
 /// The surfaces of a block, quantity by quantity.
 struct SurfaceBlock {
   Vec3s position, error, normal, shading_normal;
-  Vec2s uv;
+  Vec2s uv, second_uv;
   Floats clearance{};   ///< As Surface::clearance().
   Floats uv_density{};  ///< How much of uv, on a side, a square of the world of side 1 covers; 0: not known.
+  Floats second_uv_density{};
   std::array<MaterialId, kBlock> material;
 
   Surface operator[](int i) const {
-    return {position[i], error[i], normal[i], shading_normal[i], uv[i], material[i]};
+    return {position[i], error[i], normal[i], shading_normal[i], uv[i], second_uv[i], material[i]};
   }
   void set(int i, const Surface& surface);
 };
@@ -44,6 +45,12 @@ class SurfaceReader {
   void prefetch_triangle(const Hit& hit) const;
   void prefetch_corners(const Hit& hit) const;
 
+  /// As the function of this name (surface.h). Not for a miss.
+  std::array<float, 4> vertex_color(const Hit& hit) const {
+    const Mesh& mesh = meshes_[hit.instance_id.value];
+    return mesh.has_colors ? boxwood::vertex_color(scene_, hit) : std::array<float, 4>{1, 1, 1, 1};
+  }
+
   /// Place `i` of the block is for `hits[which[i]]`, which the scene returned for `rays[which[i]]`. At most
   /// kBlock, none of them a miss.
   void read(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint32_t> which,
@@ -56,9 +63,10 @@ class SurfaceReader {
     const Vec3* positions = nullptr;
     const Vec3* normals = nullptr;
     const Vec2* uvs = nullptr;
+    const Vec2* second_uvs = nullptr;
     const MaterialId* materials = nullptr;  ///< One for each triangle; null: all have this one.
     MaterialId material;
-    bool is_moved = false;
+    bool is_moved = false, has_colors = false;
   };
 
   const Scene& scene_;

@@ -6,6 +6,8 @@
 // for loops over many hits (surface_block.h).
 #pragma once
 
+#include <array>
+
 #include "boxwood/shape/triangle.h"
 
 namespace boxwood {
@@ -16,6 +18,15 @@ inline constexpr float kHalfUlp = 0x1p-24f;
 /// What the corners hold, weighed by the weights `v` and `w` of the second and the third.
 inline Vec3 blend(Vec3 a, Vec3 b, Vec3 c, float v, float w) {
   return a * (1 - v - w) + b * v + c * w;
+}
+inline Vec2 blend(Vec2 a, Vec2 b, Vec2 c, float v, float w) {
+  return {a.x * (1 - v - w) + b.x * v + c.x * w, a.y * (1 - v - w) + b.y * v + c.y * w};
+}
+inline std::array<float, 4> blend(const std::array<float, 4>& a, const std::array<float, 4>& b,
+                                  const std::array<float, 4>& c, float v, float w) {
+  std::array<float, 4> out;
+  for (std::size_t i = 0; i < 4; ++i) out[i] = a[i] * (1 - v - w) + b[i] * v + c[i] * w;
+  return out;
 }
 
 /// How far from the plane of (a, b, c), near `p`, the watertight test could still report a crossing: its
