@@ -339,8 +339,8 @@ void add_info(CLI::App& program) {
   command->add_flag("--cpu", arguments->is_about_cpu, "Which instructions answer rays; no scene");
   command->add_flag("--quiet", arguments->is_quiet, "No progress");
   command->footer(gallery_help() +
-                  "\nTriangles stand in blocks of 4, in a tree of up to 4, 8 or 16 children a node; fill\n"
-                  "is the share of the blocks that is used. Other trees are binary.\n"
+                  "\nTriangles stand in blocks of 4, in a tree of up to 4, 8 or 16 children a node;\n"
+                  "fill is the share of the blocks that is used. Other trees are binary.\n"
                   "SAH cost: the expected work of a random ray, in nodes visited (in binary trees\n"
                   "of shapes: in shape tests). EPO: how much of other surfaces lies inside a node's\n"
                   "box, in the same unit; both are better when smaller. EPO is left out (-) where\n"
