@@ -174,6 +174,7 @@ def test_ctrl_c(work, threads):
     # The work would take a minute or more. Ctrl-C comes while it runs, and ends it long before its end.
     out = run(f"""
         import os, signal, threading, time, numpy as np, boxwood as bw
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background are started without it
         scene = bw.load("soup:2000")
         rng = np.random.default_rng(1)
         if "from_mesh" in {work!r}:
