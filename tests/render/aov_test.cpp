@@ -100,12 +100,18 @@ TEST(Aov, ColorIsThatOfTheShapeWithoutLight) {
   EXPECT_EQ(pixel(0, 0), Vec3{});
 }
 
-TEST(Aov, ColorTakesTheTextureOfTheMesh) {
-  SceneDesc desc;
+/// Red on the left, blue on the right.
+Texture red_and_blue() {
   Texture texture;
   texture.width = 2;
   texture.height = 1;
   texture.texels = {{255, 0, 0, 255}, {0, 0, 255, 255}};
+  return texture;
+}
+
+TEST(Aov, ColorTakesTheTextureOfTheMesh) {
+  SceneDesc desc;
+  Texture texture = red_and_blue();
   Material material = material_of_kind(Material::Kind::matte, splat(1));
   material.color_texture = desc.add(std::move(texture));
   TriangleMesh mesh{{{-1, -1, -2}, {1, -1, -2}, {1, 1, -2}, {-1, 1, -2}},
@@ -122,10 +128,7 @@ TEST(Aov, ColorTakesTheTextureOfTheMesh) {
 
 TEST(Aov, ColorTakesTheTextureBySecondCoordinates) {
   SceneDesc desc;
-  Texture texture;
-  texture.width = 2;
-  texture.height = 1;
-  texture.texels = {{255, 0, 0, 255}, {0, 0, 255, 255}};
+  Texture texture = red_and_blue();
   texture.is_by_second_uvs = true;
   Material material = material_of_kind(Material::Kind::matte, splat(1));
   material.color_texture = desc.add(std::move(texture));

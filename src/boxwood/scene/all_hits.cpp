@@ -87,22 +87,6 @@ struct Crossings {
   }
 };
 
-/// The lists of this thread; taken while in use, because filling a chunk may ask another scene.
-class Scratch {
- public:
-  Scratch() : mine_(std::exchange(spare(), {})) {}
-  ~Scratch() { spare() = std::move(mine_); }
-  Scratch(const Scratch&) = delete;
-  Crossings* operator->() { return &mine_; }
-
- private:
-  static Crossings& spare() {
-    static thread_local Crossings crossings;
-    return crossings;
-  }
-  Crossings mine_;
-};
-
 bool has_only_triangles(const Scene::Parts& parts) {
   return parts.kernels && parts.is_only_triangles && !parts.world.triangles.is_empty();
 }
@@ -186,7 +170,7 @@ void answer_all(const Scene& scene, std::span<const Ray> rays, std::size_t* offs
                         [&](std::size_t i, std::vector<Hit>& of_ray) { scene.all_hits(rays[i], of_ray); });
     return;
   }
-  Scratch crossings;
+  detail::Lent<Crossings> crossings;
   crossings->find_and_sort(parts, rays);
   const std::vector<std::size_t>& begins = crossings->begins;
   std::vector<Hit> answered(crossings->unusual.empty() ? 0 : crossings->hits.size());
@@ -224,7 +208,7 @@ void answer_count(const Scene& scene, std::span<const Ray> rays, std::size_t* co
     for (std::size_t i = 0; i < rays.size(); ++i) counts[i] = scene.count_hits(rays[i]);
     return;
   }
-  Scratch crossings;
+  detail::Lent<Crossings> crossings;
   if (scene.parts().world.triangles.has_parts()) {
     crossings->find_and_sort(scene.parts(), rays);
     for (std::size_t i = 0; i < rays.size(); ++i) counts[i] = crossings->begins[i + 1] - crossings->begins[i];

@@ -29,25 +29,7 @@ struct Buffers {
   std::vector<std::uint32_t> order, unusual;
 };
 
-/// The buffers of this thread; taken while in use, because a user's own shape may ask a scene from inside.
-class Scratch {
- public:
-  Scratch() : buffers_(std::exchange(spare(), {})) {
-    buffers_.found.resize(kMaxChunk);
-    buffers_.unusual.clear();
-  }
-  ~Scratch() { spare() = std::move(buffers_); }
-  Scratch(const Scratch&) = delete;
-
-  Buffers* operator->() { return &buffers_; }
-
- private:
-  static Buffers& spare() {
-    static thread_local Buffers mine;
-    return mine;
-  }
-  Buffers buffers_;
-};
+using Scratch = detail::Lent<Buffers>;
 
 /// What two kernels refused, one after the other, in order and once.
 std::span<const std::uint32_t> once_each(std::vector<std::uint32_t>& unusual) {
@@ -144,6 +126,8 @@ void answer_closest(const Scene::Parts& parts, std::span<const Ray> rays, Hit* h
   // C++ in the end.
   Scratch scratch;
   std::vector<std::uint32_t>& unusual = scratch->unusual;
+  unusual.clear();
+  scratch->found.resize(kMaxChunk);
   if (!parts.world.triangles.is_empty()) {
     simd::TriangleHit* const found = scratch->found.data();
     parts.kernels->closest_hits(parts.world.triangles, rays, parts.bounds, found, hits, unusual);
@@ -164,6 +148,7 @@ void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits
   }
   Scratch scratch;
   std::vector<std::uint32_t>&order = scratch->order, &unusual = scratch->unusual;
+  unusual.clear();
   std::fill_n(hits, rays.size(), false);
   if (!parts.world.triangles.is_empty())
     parts.kernels->any_hits(parts.world.triangles, rays, parts.bounds, hits, unusual);
@@ -183,27 +168,32 @@ void answer_any(const Scene::Parts& parts, std::span<const Ray> rays, bool* hits
 
 namespace {
 
-/// Calls in_turn(rays, answers) with parts of a batch that are answered in the order in which they come, and
-/// sorted(count, fill, take) with those that are sorted first.
-template <class Answer, class InTurn, class Sorted>
-void in_best_order(const Scene::Parts& parts, std::span<const Ray> rays, std::span<Answer> answers,
-                   Executor* executor, const InTurn& in_turn, const Sorted& sorted) {
-  if (!parts.kernels || !parts.world.may_sort_rays || rays.size() < detail::kLeastSorted)
-    return in_turn(rays, answers);
-  RawArray<std::uint64_t> order(std::min(rays.size(), detail::kMostSorted));
-  for (std::size_t begin = 0; begin < rays.size(); begin += detail::kMostSorted) {
-    const std::size_t count = std::min(rays.size() - begin, detail::kMostSorted);
-    const auto some = rays.subspan(begin, count);
-    const auto their_answers = answers.subspan(begin, count);
-    if (count < detail::kLeastSorted || !detail::are_scattered(some, parts.bounds)) {
-      in_turn(some, their_answers);
+/// Answers by answer_chunk(parts, some rays, their answers), or by answer_stream(scene, stream, fill, take)
+/// where rays are sorted first.
+template <class Answer, class AnswerChunk, class AnswerStream>
+void answer_batch(const Scene& scene, std::span<const Ray> rays, std::span<Answer> answers,
+                  Executor* executor, const AnswerChunk& answer_chunk, const AnswerStream& answer_stream) {
+  const Scene::Parts& parts = scene.parts();
+  detail::check_lengths(rays.size(), answers.size(), "hits");
+  const bool may_sort = parts.kernels && parts.world.may_sort_rays && rays.size() >= detail::kLeastSorted;
+  const std::size_t most = may_sort ? detail::kMostSorted : rays.size();
+  RawArray<std::uint64_t> order;
+  for (std::size_t begin = 0; begin < rays.size(); begin += most) {
+    const std::size_t count = std::min(rays.size() - begin, most);
+    const std::span<const Ray> some = rays.subspan(begin, count);
+    const std::span<Answer> theirs = answers.subspan(begin, count);
+    if (!may_sort || count < detail::kLeastSorted || !detail::are_scattered(some, parts.bounds)) {
+      detail::for_chunks(executor, count, [&](std::size_t first, std::size_t end) {
+        answer_chunk(parts, some.subspan(first, end - first), &theirs[first]);
+      });
       continue;
     }
+    if (order.size() < count) order = RawArray<std::uint64_t>(count);
     detail::find_ray_order(some, parts.bounds, std::span(order.data(), count),
                            executor ? *executor : default_executor());
     const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(order[i]); };
-    sorted(
-        count,
+    answer_stream(
+        scene, Stream{count, executor, {}},
         [&](std::size_t first, std::span<Ray> chunk) {
           constexpr std::size_t kAhead = 16;
           for (std::size_t i = 0; i < chunk.size(); ++i) {
@@ -212,7 +202,7 @@ void in_best_order(const Scene::Parts& parts, std::span<const Ray> rays, std::sp
           }
         },
         [&](std::size_t first, std::span<const Ray>, std::span<const Answer> found) {
-          for (std::size_t i = 0; i < found.size(); ++i) their_answers[number(first + i)] = found[i];
+          for (std::size_t i = 0; i < found.size(); ++i) theirs[number(first + i)] = found[i];
         });
   }
 }
@@ -220,31 +210,11 @@ void in_best_order(const Scene::Parts& parts, std::span<const Ray> rays, std::sp
 }  // namespace
 
 void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, Executor* executor) const {
-  detail::check_lengths(rays.size(), hits.size(), "hits");
-  in_best_order(
-      *parts_, rays, hits, executor,
-      [&](std::span<const Ray> some, std::span<Hit> answers) {
-        detail::for_chunks(executor, some.size(), [&](std::size_t begin, std::size_t end) {
-          detail::answer_closest(*parts_, some.subspan(begin, end - begin), &answers[begin]);
-        });
-      },
-      [&](std::size_t count, const FillRays& fill, const Take<Ray, Hit>& take) {
-        stream_closest_hit(*this, {count, executor, {}}, fill, take);
-      });
+  answer_batch(*this, rays, hits, executor, detail::answer_closest, stream_closest_hit);
 }
 
 void Scene::any_hit(std::span<const Ray> rays, std::span<bool> hits, Executor* executor) const {
-  detail::check_lengths(rays.size(), hits.size(), "hits");
-  in_best_order(
-      *parts_, rays, hits, executor,
-      [&](std::span<const Ray> some, std::span<bool> answers) {
-        detail::for_chunks(executor, some.size(), [&](std::size_t begin, std::size_t end) {
-          detail::answer_any(*parts_, some.subspan(begin, end - begin), &answers[begin]);
-        });
-      },
-      [&](std::size_t count, const FillRays& fill, const Take<Ray, bool>& take) {
-        stream_any_hit(*this, {count, executor, {}}, fill, take);
-      });
+  answer_batch(*this, rays, hits, executor, detail::answer_any, stream_any_hit);
 }
 
 }  // namespace boxwood

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 
 #include "boxwood/scene/stream.h"
 
@@ -13,6 +14,26 @@ constexpr std::size_t kMaxChunk = 4096, kMinChunk = 512;
 
 /// Chunks begin at multiples of this, so that none cuts a tile of a picture, whose rays go the same way.
 constexpr std::size_t kWhole = 64;
+
+/// A thread's own T, kept from one chunk to the next; taken while in use, because a shape or a caller may ask
+/// a scene from inside.
+template <class T>
+class Lent {
+ public:
+  Lent() : mine_(std::move(spare())) {}
+  ~Lent() { spare() = std::move(mine_); }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  T* operator->() { return &mine_; }
+  T& operator*() { return mine_; }
+
+ private:
+  static T& spare() {
+    static thread_local T spare;
+    return spare;
+  }
+  T mine_;
+};
 
 /// Throws std::invalid_argument when there is not one answer for each ray.
 void check_lengths(std::size_t rays, std::size_t answers, const char* what);

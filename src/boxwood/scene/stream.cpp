@@ -87,12 +87,10 @@ void stream_all_hits(const Scene& scene, const Stream& stream, const FillRays& f
                      const TakeAllHits& take) {
   for_filled_chunks<Ray>(stream, fill, [&](std::size_t begin, std::span<const Ray> rays) {
     // It grows to what the fullest chunk of the thread needs, once.
-    static thread_local std::vector<Hit> spare;
-    std::vector<Hit> hits = std::exchange(spare, {});
+    detail::Lent<std::vector<Hit>> hits;
     Room<std::size_t> offsets(rays.size() + 1);
-    detail::answer_all(scene, rays, offsets.span().data(), hits);
-    take(begin, rays, offsets.span(), hits);
-    spare = std::move(hits);
+    detail::answer_all(scene, rays, offsets.span().data(), *hits);
+    take(begin, rays, offsets.span(), *hits);
   });
 }
 
