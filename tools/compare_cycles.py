@@ -21,7 +21,7 @@ from pathlib import Path
 
 from measure_noise import compare, render_boxwood, run
 
-# Runs inside of Blender: scene, threads, size, then pairs of samples and file.
+# Runs inside of Blender: scene, threads, size, then samples, seed and file of each picture.
 INSIDE_BLENDER = """
 import bpy, numpy, sys, time
 numpy.bool = bool  # the importer of 3.4 still says numpy.bool, which numpy 1.24 has dropped
@@ -52,15 +52,15 @@ scene.render.image_settings.file_format = "OPEN_EXR"
 scene.render.image_settings.color_depth = "32"
 scene.render.use_persistent_data = True
 cycles = scene.cycles
-cycles.device, cycles.seed = "CPU", 0
+cycles.device = "CPU"
 cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_auto_tile = False
 cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 cycles.blur_glossy, cycles.light_sampling_threshold = 0, 0
 cycles.pixel_filter_type = "BOX"
 for kind in ("", "diffuse_", "glossy_", "transmission_", "transparent_max_"):
     setattr(cycles, kind + "bounces" if kind else "max_bounces", 64)
-for samples, file in zip(rest[::2], rest[1::2]):
-    cycles.samples = int(samples)
+for samples, seed, file in zip(rest[::3], rest[1::3], rest[2::3]):
+    cycles.samples, cycles.seed = int(samples), int(seed)
     scene.render.filepath = file
     start = time.process_time()
     bpy.ops.render.render(write_still=True)
@@ -198,7 +198,7 @@ def render_cycles(program, scene, threads, size, jobs):
         script.write(INSIDE_BLENDER)
         script.flush()
         said = run([program, "-b", "-noaudio", "-P", script.name, "--", scene, threads, size,
-                    *(x for job in jobs for x in job)])
+                    *(x for job in jobs for x in (job.samples, int(job.is_reference), job.file))])
     seconds = [float(found) for found in re.findall(r"^TOOK \d+ ([\d.]+)", said, re.MULTILINE)]
     if len(seconds) != len(jobs):  # it exits with 0 whatever its script does
         raise SystemExit(f"{program} did not render: {said.strip()}")

@@ -192,13 +192,14 @@ def main():
 
     def render_mitsuba(jobs):
         seconds = []
-        for samples, file in jobs:
+        for job in jobs:
             start = time.process_time()
             # Few at a time: the memory of the llvm variants grows with the samples.
-            parts = [min(64, samples - i) for i in range(0, samples, 64)]
-            picture = sum(n * np.array(mi.render(scene, spp=n, seed=seed)) for seed, n in enumerate(parts)) / samples
+            parts = [min(64, job.samples - i) for i in range(0, job.samples, 64)]
+            first_seed = 1000 if job.is_reference else 0
+            picture = sum(n * np.array(mi.render(scene, spp=n, seed=first_seed + i)) for i, n in enumerate(parts))
             seconds.append(time.process_time() - start)
-            mi.Bitmap(picture.astype(np.float32)).write(str(file))
+            mi.Bitmap((picture / job.samples).astype(np.float32)).write(str(job.file))
         return seconds
 
     compare(options.boxwood, [
