@@ -32,6 +32,34 @@ TEST_F(Gltf, MaterialsBecomeOurs) {
   EXPECT_TRUE(desc.materials[3].is_thin);
 }
 
+TEST_F(Gltf, OnlyWhatIsBrighterThanWhiteIsALamp) {
+  const auto is_lit = [&](const std::string& extensions) {
+    Source source;
+    source.parts["materials"] = R"([{"emissiveFactor":[1,1,1])" + extensions + "}]";
+    source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"material":0}]}])";
+    return scene(source).is_lit_by_glow;
+  };
+  EXPECT_FALSE(is_lit(""));  // a screen
+  EXPECT_TRUE(is_lit(R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":1.5}})"));
+}
+
+TEST_F(Gltf, UnlitMaterialsGlowInTheirColor) {
+  Source source;
+  source.parts["extensionsRequired"] = R"(["KHR_materials_unlit","KHR_materials_variants"])";
+  source.parts["materials"] =
+      R"([{"pbrMetallicRoughness":{"baseColorFactor":[0.25,0.5,1,0.5]},"alphaMode":"BLEND","extensions":{"KHR_materials_unlit":{}}}])";
+  source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"material":0}]}])";
+  const SceneDesc desc = scene(source);
+  EXPECT_TRUE(desc.warnings.empty());
+  const Material& m = desc.materials.at(0);
+  EXPECT_EQ(m.kind, Material::Kind::matte);
+  EXPECT_EQ(m.color, (Vec3{0, 0, 0}));
+  EXPECT_EQ(m.emission, (Vec3{0.25f, 0.5f, 1}));
+  EXPECT_TRUE(m.emits_from_both_sides);
+  EXPECT_FLOAT_EQ(m.opacity, 0.5f);
+  EXPECT_FALSE(desc.is_lit_by_glow);
+}
+
 TEST_F(Gltf, ExtensionsOfMaterials) {
   Source source;
   source.parts["materials"] = R"([{"extensions":{
@@ -253,7 +281,8 @@ TEST_F(Gltf, PicturesAreDecodedOnceAndMissingOnesAreWarnings) {
   source.parts["images"] =
       R"([{"bufferView":2,"mimeType":"image/png","name":"green"},{"uri":"data:image/png;base64,)" +
       base64(png) + R"("},{"uri":"gone.png"},{"bufferView":7,"mimeType":"image/png"}])";
-  source.parts["textures"] = R"([{"source":0},{"source":1},{"source":2},{"source":0},{"source":3}])";
+  source.parts["textures"] =
+      R"([{"source":0},{"source":1},{"source":2},{"extensions":{"EXT_texture_webp":{"source":0}}},{"source":3}])";
   std::string materials;
   for (int i = 0; i < 5; ++i)
     materials += (i ? "," : "[") + std::string(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)") +

@@ -120,7 +120,8 @@ UvSets uv_sets_of(const tinygltf::Material& material) {
 int image_of(const File& file, int texture) {
   const auto& textures = file.model->textures;
   if (texture < 0 || std::size_t(texture) >= textures.size()) return -1;
-  const int image = textures[texture].source;
+  const int image = whole_number(extension(textures[texture].extensions, "EXT_texture_webp"), "source",
+                                 textures[texture].source);
   return image >= 0 && std::size_t(image) < file.model->images.size() ? image : -1;
 }
 
@@ -178,6 +179,10 @@ class MaterialMaker {
     m.kind = Material::Kind::layered;
     m.roughness_scale = Material::RoughnessScale::square_root_of_alpha;
     take_base(source, m, is_colored);
+    if (source.extensions.count("KHR_materials_unlit") != 0) {
+      show_unlit(m);
+      return m;
+    }
     take_emission(source, m);
     take_layers(source.extensions, m);
     take_inside(source.extensions, m);
@@ -209,6 +214,17 @@ class MaterialMaker {
     m.opacity = pbr.baseColorFactor.size() == 4 ? clamp01(pbr.baseColorFactor[3]) : 1;
     m.opacity_texture = {m.color_texture, Channel::alpha};
     if (source.alphaMode == "MASK") m.alpha_cutoff = static_cast<float>(std::fmax(source.alphaCutoff, 0));
+  }
+
+  /// Shows its color whatever the light is: black, and glowing so.
+  static void show_unlit(Material& m) {
+    m.kind = Material::Kind::matte;
+    m.emission = m.color;
+    m.emission_texture = m.color_texture;
+    m.emits_from_both_sides = true;
+    m.color = {0, 0, 0};
+    m.color_texture = m.normal_texture = {};
+    m.roughness_texture = m.metalness_texture = {};
   }
 
   void take_emission(const tinygltf::Material& source, Material& m) {
@@ -357,9 +373,15 @@ void add_materials(const File& file, Executor& executor, SceneDesc& desc) {
       used.insert(id);
       if (primitive.attributes.count("COLOR_0") != 0) colored.insert(id);
     }
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    desc.add(
-        maker.make(materials[i], "material " + std::to_string(i), colored.count(static_cast<int>(i)) != 0));
+  desc.is_lit_by_glow = false;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const int id = static_cast<int>(i);
+    const MaterialId added =
+        desc.add(maker.make(materials[i], "material " + std::to_string(i), colored.count(id) != 0));
+    // What is no brighter than white is there to be seen; lamps need KHR_materials_emissive_strength.
+    if (used.count(id) != 0 && max_component(desc.materials[added.value].emission) > 1)
+      desc.is_lit_by_glow = true;
+  }
   if (used.count(kNone) != 0) desc.add(maker.make({}, "no material", colored.count(kNone) != 0));
 }
 
