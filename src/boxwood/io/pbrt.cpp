@@ -37,9 +37,11 @@ class Interpreter {
     }
     state_.expect_all_closed();
     if (desc_.camera) {
-      desc_.camera->width = size_.width;
-      desc_.camera->height = size_.height;
+      desc_.camera->width = film_.width;
+      desc_.camera->height = film_.height;
     }
+    if (const float exposure = film_.speed * exposure_time_; film_.has_sensor && exposure > 0)
+      brighten(desc_, exposure);
     read_files(desc_, mesh_files_, textures_.pictures(), warnings_, executor_);
     return std::move(desc_);
   }
@@ -91,7 +93,8 @@ class Interpreter {
   Textures textures_;
   Materials materials_;
   State state_;
-  PictureSize size_;
+  Film film_;
+  float exposure_time_ = 1;
 
   std::map<std::string, Object, std::less<>> objects_;
   Object* open_object_ = nullptr;
@@ -170,7 +173,7 @@ void Interpreter::interpret(Directive& directive) {
   } else if (name == "Camera") {
     set_camera(directive);
   } else if (name == "Film") {
-    size_ = picture_size(directive);
+    film_ = make_film(directive);
   } else if (name == "MakeNamedMedium") {
     define_medium(directive);
   } else if (name == "MediumInterface") {
@@ -181,7 +184,8 @@ void Interpreter::interpret(Directive& directive) {
 
 void Interpreter::set_camera(const Directive& directive) {
   const Affine3& camera_from_world = state_.now.frame.world_from_object;
-  desc_.camera = make_camera(directive, camera_from_world, warnings_);
+  desc_.camera = make_camera(directive, camera_from_world, desc_.camera, warnings_);
+  exposure_time_ = exposure_time(directive);
   state_.name_coordinate_system("camera", inverse(camera_from_world));
 }
 
@@ -209,9 +213,12 @@ void Interpreter::begin_object(const Directive& directive) {
   const std::string& name = directive.strings[0];
   if (open_object_ != nullptr)
     fail(directive.place, "ObjectBegin " + in_quotes(name) + " stands inside of another object");
-  const auto [entry, is_new] = objects_.try_emplace(name);
-  if (!is_new) fail(directive.place, "there is already an object of the name " + in_quotes(name));
-  open_object_ = &entry->second;
+  Object& object = objects_[name];
+  if (!object.shapes.empty())
+    warnings_.once(directive.place, "there is already an object of the name " + in_quotes(name) +
+                                        "; from here on the new one counts");
+  object = {};
+  open_object_ = &object;
   state_.begin(directive);
 }
 

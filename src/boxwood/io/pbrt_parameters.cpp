@@ -144,12 +144,14 @@ void ParameterList::add_defaults(const ParameterList& defaults) {
 }
 
 const Parameter* ParameterList::find(std::string_view name) const {
-  for (const Parameter& parameter : parameters_)
-    if (parameter.name == name) {
-      parameter.is_used = true;
-      return &parameter;
-    }
-  return nullptr;
+  const Parameter* found = nullptr;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Parameter& parameter = parameters_[i];
+    if (parameter.name != name) continue;
+    parameter.is_used = true;
+    if (found == nullptr || i < given_) found = &parameter;
+  }
+  return found;
 }
 
 const Parameter* ParameterList::find_numbers(std::string_view name, std::size_t multiple_of,

@@ -217,6 +217,14 @@ std::optional<ShapeValue> make_shape(const Directive& directive, const ShapeFram
     fail(directive.place,
          directive.subject() + " stands under a transform that flattens space or is not finite");
 
+  // Exporters write objects that have no faces.
+  const bool is_mesh = kind == "trianglemesh" || kind == "bilinearmesh" || kind == "loopsubdiv";
+  if (const Parameter* positions = parameters.find("P");
+      is_mesh && positions != nullptr && positions->numbers.empty()) {
+    warnings.once(directive.place, "a mesh without vertices (\"point3 P\") is left out");
+    return std::nullopt;
+  }
+
   ShapeValue value;
   const auto take_mesh = [&](TriangleMesh mesh) {
     parameters.ignore({"faceIndices"});  // ids for other programs
