@@ -31,6 +31,33 @@ TEST_F(Obj, SharesVerticesAndKeepsTheNearestFloats) {
   EXPECT_EQ(desc.name, "quad");
 }
 
+TEST_F(Obj, VerticesHaveColors) {
+  // The first has none, the third a weight before its color.
+  const SceneDesc desc = load(write("colors.obj",
+                                    "v 0 0 0\nv 1 0 0 1 0 .7353569\nv 0 1 0 1 0 1 0\nv 1 1 0 1\n"
+                                    "f 1 2 3\nf 3 2 4\n"));
+  const TriangleMesh& mesh = mesh_of(desc);
+  ASSERT_EQ(mesh.colors.size(), 4u);
+  EXPECT_EQ(mesh.colors[0], (std::array<float, 4>{1, 1, 1, 1}));
+  EXPECT_EQ(mesh.colors[1][0], 1);
+  EXPECT_EQ(mesh.colors[1][1], 0);
+  EXPECT_NEAR(mesh.colors[1][2], 0.5f, 1e-3f);
+  EXPECT_EQ(mesh.colors[2], (std::array<float, 4>{0, 1, 0, 1}));
+  EXPECT_EQ(mesh.colors[3], (std::array<float, 4>{1, 1, 1, 1}));
+  const Material& material = desc.materials.at(desc.geometries[0].material.value);
+  EXPECT_EQ(desc.textures.at(material.color_texture.value).kind, Texture::Kind::vertex_color);
+}
+
+TEST_F(Obj, ColorsOfVerticesMultiplyTheirMaterial) {
+  write("m.mtl", "newmtl red\nKd 1 0 0\n");
+  const SceneDesc desc =
+      load(write("m.obj", "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nusemtl red\nf 1 2 3\n"));
+  const Material& material = desc.materials.at(desc.geometries.at(0).material.value);
+  EXPECT_EQ(material.color, (Vec3{1, 0, 0}));
+  EXPECT_EQ(desc.textures.at(material.color_texture.value).kind, Texture::Kind::vertex_color);
+  EXPECT_EQ(desc.materials.size(), 1u);
+}
+
 TEST_F(Obj, CountsNegativeIndicesBackFromTheNewestVertex) {
   const SceneDesc desc =
       load(write("a.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -4 -3 -1\n"));
