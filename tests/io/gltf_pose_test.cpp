@@ -23,8 +23,9 @@ class GltfPose : public Gltf {
   void add_skin() {
     const int joints = bytes("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 3);
     const int weights = floats("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, .5f, .5f, 0, 0}, 3);
-    const int bind = floats("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
-                                     1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, 2);
+    const int bind = floats(
+        "MAT4",
+        {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, 2);
     source_.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":)" +
                               std::to_string(joints) + R"(,"WEIGHTS_0":)" + std::to_string(weights) +
                               R"(},"indices":1}]}])";
@@ -65,7 +66,8 @@ TEST_F(GltfPose, ASkinTurnsNormals) {
   const int normals = floats("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
   std::string& meshes = source_.parts["meshes"];
   meshes.replace(meshes.find("\"JOINTS_0\""), 0, "\"NORMAL\":" + std::to_string(normals) + ",");
-  source_.parts["nodes"] = R"([{"mesh":0,"skin":0},{},{"rotation":[0.70710678,0,0,0.70710678],"scale":[1,1,3]}])";
+  source_.parts["nodes"] =
+      R"([{"mesh":0,"skin":0},{},{"rotation":[0.70710678,0,0,0.70710678],"scale":[1,1,3]}])";
   source_.parts["scenes"] = R"([{"nodes":[0,1,2]}])";
   const SceneDesc desc = scene(source_);
   expect_near(mesh(desc).normals[0], {0, 0, 1});
@@ -93,8 +95,9 @@ TEST_F(GltfPose, JointsThatLeadNowhere) {
 TEST_F(GltfPose, MorphTargetsCountByTheirWeightsAtRest) {
   const std::string target = std::to_string(floats("VEC3", {0, 0, 0, 0, 0, 4, 0, 8, 0}, 3));
   const auto positions = [&](const std::string& weights, const std::string& node) {
-    source_.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":)" +
-                              target + "}]}]" + weights + "}]";
+    source_.parts["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":)" + target +
+        "}]}]" + weights + "}]";
     source_.parts["nodes"] = R"([{"mesh":0)" + node + "}]";
     const SceneDesc desc = scene(source_);
     EXPECT_TRUE(desc.warnings.empty());
@@ -119,7 +122,8 @@ TEST_F(GltfPose, InstancesStandByTheAttributesOfTheirNode) {
            attributes + "}}}}]";
   };
   source_.parts["extensionsRequired"] = R"(["EXT_mesh_gpu_instancing"])";
-  source_.parts["nodes"] = node("\"TRANSLATION\":" + moves + ",\"ROTATION\":" + turns + ",\"SCALE\":" + sizes);
+  source_.parts["nodes"] =
+      node("\"TRANSLATION\":" + moves + ",\"ROTATION\":" + turns + ",\"SCALE\":" + sizes);
   const SceneDesc desc = scene(source_);
   EXPECT_TRUE(desc.warnings.empty());
   ASSERT_EQ(desc.geometries.size(), 1u);
@@ -129,7 +133,8 @@ TEST_F(GltfPose, InstancesStandByTheAttributesOfTheirNode) {
 
   const std::string three = std::to_string(floats("VEC3", {1, 1, 1, 1, 1, 1, 1, 1, 1}, 3));
   source_.parts["nodes"] = node("\"TRANSLATION\":" + moves + ",\"SCALE\":" + three);
-  EXPECT_CONTAINS(error(source_), "node 0: TRANSLATION has 2 elements, expected one for each of the 3 copies");
+  EXPECT_CONTAINS(error(source_),
+                  "node 0: TRANSLATION has 2 elements, expected one for each of the 3 copies");
 }
 
 }  // namespace

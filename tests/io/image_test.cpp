@@ -1,6 +1,5 @@
 // What comes back from the pictures that are written, and what is said when they cannot be.
 #include "boxwood/io/image.h"
-#include "boxwood/io/picture_check.h"
 
 #include <chrono>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <sys/resource.h>
 
 #include "boxwood/io/file_bytes.h"
+#include "boxwood/io/picture_check.h"
 #include "io/files.h"
 
 namespace boxwood::io {

@@ -50,8 +50,8 @@ TEST_F(Obj, VerticesHaveColors) {
 
 TEST_F(Obj, ColorsOfVerticesMultiplyTheirMaterial) {
   write("m.mtl", "newmtl red\nKd 1 0 0\n");
-  const SceneDesc desc =
-      load(write("m.obj", "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nusemtl red\nf 1 2 3\n"));
+  const SceneDesc desc = load(
+      write("m.obj", "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nusemtl red\nf 1 2 3\n"));
   const Material& material = desc.materials.at(desc.geometries.at(0).material.value);
   EXPECT_EQ(material.color, (Vec3{1, 0, 0}));
   EXPECT_EQ(desc.textures.at(material.color_texture.value).kind, Texture::Kind::vertex_color);

@@ -101,8 +101,10 @@ TEST_F(Pbrt, LightsWithoutSurfaces) {
 
 TEST_F(Pbrt, TheSensorOfVersion4MakesLightBrighter) {
   const std::string lights =
-      " WorldBegin LightSource \"point\" LightSource \"spot\" LightSource \"distant\" LightSource \"infinite\"\n"
-      "AreaLightSource \"diffuse\"\n" + kTriangle;
+      " WorldBegin LightSource \"point\" LightSource \"spot\" LightSource \"distant\" LightSource "
+      "\"infinite\"\n"
+      "AreaLightSource \"diffuse\"\n" +
+      kTriangle;
   const auto expect_brightness = [&](const std::string& head, float brightness) {
     const SceneDesc desc = scene(head + lights);
     EXPECT_TRUE(desc.warnings.empty());
@@ -126,7 +128,8 @@ TEST_F(Pbrt, LightsMaySayHowMuchThereIsInAll) {
       "WorldBegin LightSource \"point\" \"float power\" 100 \"rgb I\" [1 .5 0]\n"
       "LightSource \"spot\" \"float power\" 100 \"float coneangle\" 60 \"float conedeltaangle\" 0\n"
       "LightSource \"distant\" \"float illuminance\" 7\n"
-      "LightSource \"infinite\" \"float illuminance\" 6.2831853\n" + kTriangle);
+      "LightSource \"infinite\" \"float illuminance\" 6.2831853\n" +
+      kTriangle);
   EXPECT_TRUE(desc.warnings.empty());
   expect_near(desc.point_lights.at(0).intensity, {7.957747f, 3.978874f, 0}, 1e-4f);  // over 4 pi
   expect_near(desc.spot_lights.at(0).intensity, splat(31.830989f), 1e-3f);           // over a quarter of that

@@ -120,9 +120,9 @@ TEST_F(Ply, VerticesHaveColors) {
     std::string header = "ply\nformat ascii 1.0\nelement vertex 3\n";
     for (const std::string name : {"float x", "float y", "float z"}) header += "property " + name + "\n";
     for (const std::string name : {"red", "green", "blue"}) header += "property " + type + " " + name + "\n";
-    return load(write("a.ply", header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
-                                   "0 0 0 " + colors + "\n1 0 0 " + colors + "\n0 1 0 " + colors +
-                                   "\n3 0 1 2\n"));
+    return load(
+        write("a.ply", header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                           "0 0 0 " + colors + "\n1 0 0 " + colors + "\n0 1 0 " + colors + "\n3 0 1 2\n"));
   };
   const SceneDesc desc = scene("uchar", "255 188 0");
   const TriangleMesh& mesh = std::get<TriangleMesh>(desc.geometries.at(0).shapes);

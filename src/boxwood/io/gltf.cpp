@@ -204,7 +204,8 @@ class Builder {
       if (node.skin != -1) {
         joints = joint_transforms(file_, node.skin, world_from_node_);
         if (!joints)
-          warn(desc_.warnings, file_, where, "a joint of its skin is not in the scene; the mesh has its plain form");
+          warn(desc_.warnings, file_, where,
+               "a joint of its skin is not in the scene; the mesh has its plain form");
       }
       // Joints take it to the world; where the node stands does not count.
       std::vector<Affine3> places{Affine3::identity()};
@@ -349,7 +350,7 @@ class Builder {
   SceneDesc desc_;
   std::vector<std::optional<Affine3>> world_from_node_;  // of those that are in the scene
   std::size_t copy_count_ = 0;
-  std::vector<int> posed_;                               // nodes whose mesh has a form of its own there
+  std::vector<int> posed_;  // nodes whose mesh has a form of its own there
   // By mesh: its primitives, once it was needed.
   std::vector<std::optional<std::vector<GeometryId>>> geometries_;
 };

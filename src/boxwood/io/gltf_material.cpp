@@ -83,9 +83,12 @@ TextureUse use_of(const tinygltf::Value* object, const char* name) {
                 member(member(info, "extensions"), "KHR_texture_transform"));
 }
 
+constexpr const char* kSpecularGloss = "KHR_materials_pbrSpecularGlossiness";
+
 /// Every texture of a material, whatever for; the base color's comes first.
 std::vector<TextureUse> textures_of(const tinygltf::Material& m) {
   std::vector<TextureUse> uses = {use_of(m.pbrMetallicRoughness.baseColorTexture),
+                                  use_of(extension(m.extensions, kSpecularGloss), "diffuseTexture"),
                                   use_of(m.pbrMetallicRoughness.metallicRoughnessTexture),
                                   use_of(m.normalTexture), use_of(m.emissiveTexture)};
   constexpr std::pair<const char*, const char*> kOthers[] = {
@@ -186,6 +189,9 @@ class MaterialMaker {
     take_emission(source, m);
     take_layers(source.extensions, m);
     take_inside(source.extensions, m);
+    if (const tinygltf::Value* gloss = extension(source.extensions, kSpecularGloss);
+        gloss && !has_metalness(source))
+      take_specular_gloss(source, *gloss, m, is_colored);
     return m;
   }
 
@@ -209,9 +215,13 @@ class MaterialMaker {
     m.normal_texture = texture_id(use_of(source.normalTexture), false);
     m.normal_scale = static_cast<float>(source.normalTexture.scale);
 
-    // Opacity is the alpha of the base color, where the material says that it counts.
+    take_opacity(source, pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[3] : 1, m);
+  }
+
+  /// Opacity is the alpha of the base color, where the material says that it counts.
+  static void take_opacity(const tinygltf::Material& source, double alpha, Material& m) {
     if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
-    m.opacity = pbr.baseColorFactor.size() == 4 ? clamp01(pbr.baseColorFactor[3]) : 1;
+    m.opacity = clamp01(alpha);
     m.opacity_texture = {m.color_texture, Channel::alpha};
     if (source.alphaMode == "MASK") m.alpha_cutoff = static_cast<float>(std::fmax(source.alphaCutoff, 0));
   }
@@ -258,6 +268,49 @@ class MaterialMaker {
     m.sheen_color_texture = texture_id(use_of(sheen, "sheenColorTexture"), true);
     m.sheen_roughness = clamp01(number(sheen, "sheenRoughnessFactor", 0));
     m.sheen_roughness_texture = {texture_id(use_of(sheen, "sheenRoughnessTexture"), false), Channel::alpha};
+  }
+
+  /// Most files of that kind say the same a second time, in the format's own way.
+  static bool has_metalness(const tinygltf::Material& source) {
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    return pbr.baseColorTexture.index >= 0 || pbr.metallicRoughnessTexture.index >= 0 ||
+           pbr.metallicFactor != 1 || pbr.roughnessFactor != 1 ||
+           color_of(pbr.baseColorFactor, {1, 1, 1}) != Vec3{1, 1, 1};
+  }
+
+  /// A matte color below a boundary that reflects so much of each color head-on; or metal, where there is
+  /// nothing below.
+  void take_specular_gloss(const tinygltf::Material& source, const tinygltf::Value& gloss, Material& m,
+                           bool is_colored) {
+    constexpr float kBlack = 0.04f, kHighestHeadOn = 0.66f;  // of the highest index that the renderer takes
+    const Vec3 specular = min(color(&gloss, "specularFactor", {1, 1, 1}), {1, 1, 1});
+    const float most = max_component(specular);
+    const TextureUse picture = use_of(&gloss, "diffuseTexture");
+    m.color = color(&gloss, "diffuseFactor", {1, 1, 1});
+    m.color_texture = texture_id(picture, true);
+    if (picture.texture >= 0 && !m.color_texture.is_valid()) m.color *= 0.5f;
+    m.metalness = picture.texture < 0 && max_component(m.color) <= kBlack && most > kBlack ? 1.0f : 0.0f;
+    if (m.metalness > 0) m.color = specular;
+    if (is_colored) m.color_texture = times_vertex_colors(m.color_texture);
+    const tinygltf::Value* diffuse = member(&gloss, "diffuseFactor");
+    const bool has_alpha = diffuse != nullptr && diffuse->IsArray() && diffuse->ArrayLen() == 4;
+    take_opacity(source, has_alpha && diffuse->Get(3).IsNumber() ? diffuse->Get(3).GetNumberAsDouble() : 1,
+                 m);
+    m.roughness = 1 - clamp01(number(&gloss, "glossinessFactor", 1));
+    m.specular = most > 0 ? 1 : 0;
+    m.specular_color = most > 0 ? specular / most : specular;
+    const float root = std::sqrt(std::fmin(most, kHighestHeadOn));
+    if (most > 0) m.ior = (1 + root) / (1 - root);
+    if (member(&gloss, "specularGlossinessTexture") != nullptr) {
+      // The picture may turn every part of it into something else; what is most common stands in.
+      m.metalness = 0;
+      m.specular = 1;
+      m.specular_color = {1, 1, 1};
+      m.ior = 1.5f;
+      m.roughness = 0.5f;
+      warn(desc_.warnings, file_, "",
+           "pictures of gloss (specularGlossinessTexture) are not supported; plastic stands in");
+    }
   }
 
   /// What gets through, and what the inside takes away.

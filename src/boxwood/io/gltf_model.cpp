@@ -15,12 +15,12 @@ namespace boxwood::io::gltf {
 namespace {
 
 // Of the variants the one that a file begins with is shown.
-constexpr std::array<std::string_view, 14> kSupportedExtensions = {
+constexpr std::array<std::string_view, 15> kSupportedExtensions = {
     "KHR_lights_punctual",     "KHR_mesh_quantization",      "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_volume",
     "KHR_materials_clearcoat", "KHR_materials_sheen",        "KHR_materials_specular",
     "KHR_materials_unlit",     "KHR_materials_variants",     "KHR_texture_transform",
-    "EXT_texture_webp",        "EXT_mesh_gpu_instancing"};
+    "EXT_texture_webp",        "EXT_mesh_gpu_instancing",    "KHR_materials_pbrSpecularGlossiness"};
 
 /// A library's message in one line that is not too long (tinygltf quotes whole data URIs).
 std::string one_line(std::string text) {

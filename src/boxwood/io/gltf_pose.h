@@ -21,8 +21,8 @@ void morph(const File& file, std::size_t mesh, std::size_t primitive, std::span<
 
 /// Where each joint of a skin takes vertices: world_from_joint * joint_from_mesh. None where a joint stands
 /// nowhere. Throws FileError for data that does not fit together.
-std::optional<std::vector<Affine3>> joint_transforms(
-    const File& file, int skin, std::span<const std::optional<Affine3>> world_from_node);
+std::optional<std::vector<Affine3>> joint_transforms(const File& file, int skin,
+                                                     std::span<const std::optional<Affine3>> world_from_node);
 
 /// Takes the vertices of a primitive to the world, each by the mean of its joints. Throws FileError likewise.
 void bend(const File& file, std::size_t mesh, std::size_t primitive, std::span<const Affine3> joints,

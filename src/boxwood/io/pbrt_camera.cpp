@@ -18,8 +18,9 @@ float screen_window(const Directive& directive, Warnings& warnings) {
     fail(parameter->place, "\"screenwindow\" is not four numbers: left < right, bottom < top");
   const double width = n[1] - n[0], height = n[3] - n[2];
   if (std::fabs(n[0] + n[1]) > 1e-4 * width || std::fabs(n[2] + n[3]) > 1e-4 * height)
-    warnings.once(parameter->place,
-                  "a screen window beside the middle is not supported; one of its size in the middle stands in");
+    warnings.once(
+        parameter->place,
+        "a screen window beside the middle is not supported; one of its size in the middle stands in");
   return static_cast<float>(std::min(width, height) / 2);
 }
 
@@ -42,9 +43,9 @@ Camera make_camera(const Directive& directive, const Affine3& camera_from_world,
   } else {
     if (before) camera.fov_deg = before->fov_deg;
     for (const Parameter& parameter : parameters.all()) parameter.is_used = true;
-    warnings.once(directive.place,
-                  "cameras of the kind " + in_quotes(kind) + " are not supported; one with an angle of " +
-                      std::to_string(std::lround(camera.fov_deg)) + " degrees stands in");
+    warnings.once(directive.place, "cameras of the kind " + in_quotes(kind) +
+                                       " are not supported; one with an angle of " +
+                                       std::to_string(std::lround(camera.fov_deg)) + " degrees stands in");
   }
   camera.lens_radius = parameters.number("lensradius", 0);
   camera.focus_distance = parameters.number("focaldistance", 1e6f);

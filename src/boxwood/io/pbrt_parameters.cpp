@@ -69,6 +69,8 @@ void Warnings::once(const Place& place, const std::string& message) {
 double number_of(const Tokenizer& tokenizer, const Token& token) {
   std::string_view text = token.text;
   if (token.kind == Token::Kind::word) {
+    // Scripts write lists with commas, which pbrt reads over.
+    if (text.size() > 1 && text.back() == ',') text.remove_suffix(1);
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -2,8 +2,8 @@
 //
 // Greg Turk's polygon format (Stanford, 1994): a text header lists elements, each with a count and typed
 // properties; their values follow as text or as bytes of either order. Everything that is not a vertex's
-// position, normal, color or texture coordinate, nor the corners of a face or a triangle strip, is read over. A
-// count is believed only as far as the file has bytes for it, so that no header can ask for memory that the
+// position, normal, color or texture coordinate, nor the corners of a face or a triangle strip, is read over.
+// A count is believed only as far as the file has bytes for it, so that no header can ask for memory that the
 // file does not pay for.
 
 #include <algorithm>

@@ -68,8 +68,8 @@ Vec3 bumped_normal(const Scene& scene, const Hit& hit, const Surface& surface, V
   constexpr float kStep = 0x1p-11f;
   const auto height_at = [&](float u, float v) {
     const auto moved = [&](Vec2 uv) { return Vec2{uv.x + u, uv.y + v}; };
-    return height * number_at(scene.description(), texture,
-                              TexturePoint(moved(surface.uv), moved(surface.second_uv)));
+    return height *
+           number_at(scene.description(), texture, TexturePoint(moved(surface.uv), moved(surface.second_uv)));
   };
   const float along_u = (height_at(kStep, 0) - height_at(-kStep, 0)) / (2 * kStep),
               along_v = (height_at(0, kStep) - height_at(0, -kStep)) / (2 * kStep);

@@ -154,16 +154,17 @@ void add(Stirrer& stirrer, const Material& material) {
   const auto& [name, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides,
                emission_texture, roughness_texture, roughness_scale, metal_eta, metal_k, reflection_color,
                transmission_color, transmission_color_texture, is_thin, absorption, outer_absorption, opacity,
-               opacity_texture, alpha_cutoff, normal_texture, normal_scale, bump, bump_texture, metalness, transmission,
-               metalness_texture, transmission_texture, specular, specular_color, specular_texture,
-               specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture,
-               coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness, sheen_color_texture,
-               sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture] = material;
+               opacity_texture, alpha_cutoff, normal_texture, normal_scale, bump, bump_texture, metalness,
+               transmission, metalness_texture, transmission_texture, specular, specular_color,
+               specular_texture, specular_color_texture, coat, coat_roughness, coat_texture,
+               coat_roughness_texture, coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness,
+               sheen_color_texture, sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture] =
+      material;
   add_all(stirrer, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides,
           emission_texture, roughness_texture, roughness_scale, metal_eta, metal_k, reflection_color,
           transmission_color, transmission_color_texture, is_thin, absorption, outer_absorption, opacity,
-          opacity_texture, alpha_cutoff, normal_texture, normal_scale, bump, bump_texture, metalness, transmission,
-          metalness_texture, transmission_texture, specular, specular_color, specular_texture,
+          opacity_texture, alpha_cutoff, normal_texture, normal_scale, bump, bump_texture, metalness,
+          transmission, metalness_texture, transmission_texture, specular, specular_color, specular_texture,
           specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture,
           coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness, sheen_color_texture,
           sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture);
