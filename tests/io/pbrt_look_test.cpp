@@ -313,8 +313,12 @@ TEST_F(Pbrt, BumpsComeByTheNamesOfBothVersions) {
       "Texture \"high\" \"float\" \"scale\" \"texture tex1\" \"board\" \"float tex2\" .25\n"
       "Material \"matte\" \"texture bumpmap\" \"high\"\n" +
       kTriangle + "Material \"coateddiffuse\" \"texture displacement\" \"board\"\n" + kTriangle +
-      "Material \"matte\"\n" + kTriangle);
+      "Material \"matte\"\n" + kTriangle +
+      "Shape \"sphere\" Material \"matte\" \"texture bumpmap\" \"high\" Shape \"sphere\" Shape \"disk\"\n");
   EXPECT_TRUE(desc.warnings.empty());
+  EXPECT_TRUE(std::holds_alternative<std::vector<Sphere>>(desc.geometries.at(3).shapes));
+  for (const std::size_t i : {4, 5})  // only meshes have the directions along which bumps lie
+    EXPECT_FALSE(mesh(desc, i).uvs.empty());
   EXPECT_FLOAT_EQ(material(desc, 0).bump, .25f);
   EXPECT_TRUE(material(desc, 0).bump_texture.texture.is_valid());
   EXPECT_FLOAT_EQ(material(desc, 1).bump, 1);

@@ -191,7 +191,10 @@ void Interpreter::set_camera(const Directive& directive) {
 
 void Interpreter::add_shape(const Directive& directive) {
   const Attributes& now = state_.now;
-  std::optional<ShapeValue> value = make_shape(directive, now.frame, parser_, warnings_);
+  const Material& material = materials_.values()[now.material].material;
+  ShapeFrame frame = now.frame;
+  frame.has_relief = material.normal_texture.is_valid() || material.bump_texture.texture.is_valid();
+  std::optional<ShapeValue> value = make_shape(directive, frame, parser_, warnings_);
   if (!value) return;
   const bool is_in_object = open_object_ != nullptr;
   if (is_in_object && now.glow)
@@ -201,7 +204,7 @@ void Interpreter::add_shape(const Directive& directive) {
   const std::optional<Glow>& glow = is_in_object ? no_glow : now.glow;
   const MaterialKey key{now.material, glow.value_or(Glow{}), read_coverage(directive, textures_),
                         now.inner_absorption, now.outer_absorption};
-  PlacedShape shape{std::move(*value), material_id(key), now.frame, directive.place};
+  PlacedShape shape{std::move(*value), material_id(key), frame, directive.place};
   directive.parameters.warn_unused(directive.subject(), warnings_);
   if (is_in_object)
     open_object_->shapes.push_back(std::move(shape));
