@@ -131,6 +131,11 @@ TEST_F(GltfPose, InstancesStandByTheAttributesOfTheirNode) {
   expect_near(desc.instances[0].world_from_object.point({1, 0, 0}), {2, 0, 7});
   expect_near(desc.instances[1].world_from_object.point({1, 2, 1}), {-1, -8, 12});  // turned by half
 
+  // What is no list of attributes repeats nothing.
+  for (const std::string extension : {"7", "{}", R"({"attributes":[]})", R"({"attributes":{"SCALE":"x"}})"}) {
+    source_.parts["nodes"] = R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":)" + extension + "}}]";
+    EXPECT_LE(scene(source_).instances.size(), 1u);
+  }
   const std::string three = std::to_string(floats("VEC3", {1, 1, 1, 1, 1, 1, 1, 1, 1}, 3));
   source_.parts["nodes"] = node("\"TRANSLATION\":" + moves + ",\"SCALE\":" + three);
   EXPECT_CONTAINS(error(source_),

@@ -15,6 +15,7 @@
 #include "boxwood/io/gltf_material.h"
 #include "boxwood/io/gltf_mesh.h"
 #include "boxwood/io/gltf_pose.h"
+#include "boxwood/io/gltf_value.h"
 
 namespace boxwood::io {
 namespace gltf {
@@ -156,14 +157,13 @@ class Builder {
 
   /// Where a node's mesh stands below the node: once, unless EXT_mesh_gpu_instancing repeats it.
   std::vector<Affine3> copies(const tinygltf::Node& node, const std::string& where) {
-    const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
-    if (found == node.extensions.end()) return {Affine3::identity()};
-    const tinygltf::Value& attributes = found->second.Get(std::string("attributes"));
+    const tinygltf::Value* instancing = extension(node.extensions, "EXT_mesh_gpu_instancing");
+    if (instancing == nullptr) return {Affine3::identity()};
     std::vector<Affine3> places;
     const auto read = [&](const char* name, const auto& read_vectors, const auto& apply) {
-      const tinygltf::Value& accessor = attributes.Get(std::string(name));
-      if (!accessor.IsInt()) return;
-      const auto vectors = read_vectors(file_, accessor.GetNumberAsInt(), where + ", " + name);
+      const int accessor = whole_number(member(instancing, "attributes"), name, -1);
+      if (accessor == -1) return;
+      const auto vectors = read_vectors(file_, accessor, where + ", " + name);
       if (places.empty()) places.resize(vectors.size());
       if (vectors.size() != places.size())
         file_.fail(where, std::string(name) + " has " + std::to_string(vectors.size()) +
