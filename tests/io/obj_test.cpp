@@ -1,4 +1,5 @@
 // What a Wavefront OBJ file becomes.
+#include "boxwood/io/image.h"
 #include "boxwood/io/load.h"
 #include "io/files.h"
 
@@ -29,6 +30,29 @@ TEST_F(Obj, SharesVerticesAndKeepsTheNearestFloats) {
   EXPECT_TRUE(mesh.uvs.empty());
   EXPECT_TRUE(desc.warnings.empty());
   EXPECT_EQ(desc.name, "quad");
+}
+
+TEST_F(Obj, PicturesCutHoles) {
+  Image grey(1, 1);
+  grey.pixels = {0.5f, 0.5f, 0.5f};
+  write_image(path("a.png"), grey);
+  write_image(path("b.png"), grey);
+  write(
+      "m.mtl",
+      "newmtl leaf\nmap_Kd a.png\nmap_d a.png\nnewmtl fence\nmap_Kd a.png\nmap_d b.png\nnewmtl wall\nmap_Kd "
+      "a.png\nnewmtl gone\nmap_d gone.png\n");
+  const SceneDesc desc = load(write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  ASSERT_EQ(desc.materials.size(), 4u);
+  EXPECT_EQ(desc.materials[0].opacity_texture.texture, desc.materials[0].color_texture);
+  EXPECT_EQ(desc.materials[0].opacity_texture.channel, NumberTexture::Channel::alpha);
+  const NumberTexture& fence = desc.materials[1].opacity_texture;
+  EXPECT_EQ(fence.channel, NumberTexture::Channel::mean);
+  EXPECT_FALSE(desc.textures.at(fence.texture.value).is_srgb);  // shares, not light
+  EXPECT_TRUE(desc.textures.at(desc.materials[1].color_texture.value).is_srgb);
+  EXPECT_FALSE(desc.materials[2].opacity_texture.texture.is_valid());
+  EXPECT_FALSE(desc.materials[3].opacity_texture.texture.is_valid());
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "gone.png");
 }
 
 TEST_F(Obj, VerticesHaveColors) {
