@@ -277,6 +277,16 @@ TEST_F(Pbrt, GlossMayComeFromAPicture) {
   EXPECT_CONTAINS(coated.warnings[0], ":3: a picture for the gloss");
 }
 
+TEST_F(Pbrt, APatternThatIsNotSupportedIsItsMeanColorAndOneWarning) {
+  const SceneDesc desc = scene(
+      "WorldBegin Texture \"d\" \"color\" \"dots\" \"rgb inside\" [1 0 0] \"rgb outside\" [0 .5 0]\n"
+      "Material \"matte\" \"texture Kd\" \"d\"\n" +
+      kTriangle);
+  EXPECT_EQ(material(desc).color, (Vec3{.5f, .25f, 0}));
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], ":1: the pattern of a \"dots\" texture");
+}
+
 TEST_F(Pbrt, WhatWouldLookOtherwiseIsNamed) {
   const SceneDesc desc = scene(
       "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0] \"rgb Le\" [1 1 1]\n"
