@@ -100,6 +100,11 @@ TEST_F(Pbrt, ErrorsNameTheFileAndTheLine) {
   EXPECT_CONTAINS(error(world), "no triangle");
 }
 
+TEST_F(Pbrt, AnIncludeMayBeEmpty) {
+  write("extra.pbrt", "");
+  EXPECT_EQ(scene("WorldBegin Include \"extra.pbrt\" Shape \"sphere\"").geometries.size(), 1u);
+}
+
 TEST_F(Pbrt, IncludesThatNeverEndAreErrors) {
   write("a.pbrt", "\nInclude \"b.pbrt\"\n");
   write("b.pbrt", "Include \"a.pbrt\"\n");
