@@ -9,6 +9,10 @@
 #include <string>
 #include <thread>
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <pthread.h>
+#endif
+
 #include "boxwood/core/error.h"
 #include "rows.h"
 
@@ -18,15 +22,27 @@ namespace {
 constexpr int kMaxThreads = 1024;
 constexpr std::chrono::milliseconds kPatience{20};
 
+/// Whether this process is the fork of one that has used workers. They do not come along, what they had
+/// locked stays locked, and who waits for them waits for ever: so the fork works alone.
+bool is_alone() {
+  static std::atomic<bool> is_fork = false;
+#if defined(__unix__) || defined(__APPLE__)
+  static const int is_watched = pthread_atfork(nullptr, nullptr, [] { is_fork = true; });
+  (void)is_watched;
+#endif
+  return is_fork;
+}
+
 }  // namespace
 
 Executor& executor_of(nb::handle argument) {
   const long long threads = read_integer("threads", argument);
-  if (threads == 0) return default_executor();
   if (threads == 1) return serial_executor();
   if (threads < 0 || threads > kMaxThreads)
     throw std::invalid_argument("threads: got " + repr_of(argument) + ", expected 0 (all) to " +
                                 std::to_string(kMaxThreads));
+  if (is_alone()) return serial_executor();
+  if (threads == 0) return default_executor();
   // Never taken down: at the end of the process others may still be working.
   static std::mutex mutex;
   static auto& executors = *new std::map<long long, std::unique_ptr<Executor>>;

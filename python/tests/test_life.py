@@ -163,6 +163,45 @@ def test_processes(scene, rays, method):
             np.testing.assert_array_equal(t, expected)
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_a_fork_in_the_middle_of_a_question():
+    # A fork has none of the threads that work, and whatever they had locked stays locked.
+    out = run("""
+        import os, threading, time, warnings, numpy as np, boxwood as bw
+        warnings.simplefilter("ignore")
+        scene = bw.load("soup:5000")
+        rng = np.random.default_rng(1)
+        rays = rng.uniform(size=(200_000, 3)), rng.normal(size=(200_000, 3))
+        expected, is_over = scene.closest_hit(*rays).t, threading.Event()
+        def ask():
+            while not is_over.is_set():
+                scene.closest_hit(*rays)
+        threading.Thread(target=ask).start()
+        children, same = [], 0
+        for _ in range(12):
+            time.sleep(0.03)
+            child = os.fork()
+            if child == 0:
+                again = bw.Scene.from_mesh(*scene.mesh())
+                answers = [scene.closest_hit(*rays, threads=n).t for n in (0, 2)] + [again.closest_hit(*rays).t]
+                os._exit(0 if all(np.array_equal(t, expected) for t in answers) else 1)
+            children.append(child)
+        end = time.monotonic() + 60
+        while children and time.monotonic() < end:
+            child, status = os.waitpid(children[0], os.WNOHANG)
+            if child:
+                children.pop(0)
+                same += status == 0
+            else:
+                time.sleep(0.01)
+        is_over.set()
+        for child in children:
+            os.kill(child, 9)
+        print(same)
+    """)
+    assert out == "12"
+
+
 @pytest.mark.parametrize("work", [
     "scene.closest_hit(origins, directions, threads={threads})",
     "scene.all_hits(origins, directions, threads={threads})",
