@@ -5,10 +5,8 @@
 
 Writes a glTF scene (a room with three lamps or one; plaster, glossy plastic, rough metal; a mesh in place of the
 plastic ball, where one is named), renders it with both on the processor, each with several numbers of samples, and
-holds every picture to the same program's own picture of many samples. Both trace paths of up to 64 bounces through a
-box filter, without clamping, denoising or adaptive sampling. The time is that of the processor, all threads together,
-so that other programs do not matter much, and that of a sample, by the slope between two renders, so that neither
-pays for its start. The error falls as 1 / samples; the time to a relative MSE of 0.01 follows from a render near it.
+compares time and noise as measure_noise.py says. Both trace paths of up to 64 bounces through a box filter, without
+clamping, denoising or adaptive sampling.
 Needs `blender` (Debian: apt-get install blender python3-numpy); tried with 3.4.
 """
 
@@ -17,15 +15,13 @@ import base64
 import json
 import math
 import re
-import resource
 import struct
-import subprocess
 import tempfile
 from pathlib import Path
 
-TARGET = 0.01
+from measure_noise import compare, render_boxwood, run
 
-# Runs inside of Blender: scene, threads, size, then pairs of samples and file.
+# Runs inside of Blender: scene, threads, size, then samples, seed and file of each picture.
 INSIDE_BLENDER = """
 import bpy, numpy, sys, time
 numpy.bool = bool  # the importer of 3.4 still says numpy.bool, which numpy 1.24 has dropped
@@ -56,15 +52,15 @@ scene.render.image_settings.file_format = "OPEN_EXR"
 scene.render.image_settings.color_depth = "32"
 scene.render.use_persistent_data = True
 cycles = scene.cycles
-cycles.device, cycles.seed = "CPU", 0
+cycles.device = "CPU"
 cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_auto_tile = False
 cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 cycles.blur_glossy, cycles.light_sampling_threshold = 0, 0
 cycles.pixel_filter_type = "BOX"
 for kind in ("", "diffuse_", "glossy_", "transmission_", "transparent_max_"):
     setattr(cycles, kind + "bounces" if kind else "max_bounces", 64)
-for samples, file in zip(rest[::2], rest[1::2]):
-    cycles.samples = int(samples)
+for samples, seed, file in zip(rest[::3], rest[1::3], rest[2::3]):
+    cycles.samples, cycles.seed = int(samples), int(seed)
     scene.render.filepath = file
     start = time.process_time()
     bpy.ops.render.render(write_still=True)
@@ -197,31 +193,12 @@ def write_room(path, lamps, mesh):
     scene.write(path)
 
 
-def run(command):
-    done = subprocess.run([str(x) for x in command], capture_output=True, text=True)
-    if done.returncode:
-        raise SystemExit(f"{command[0]}: {done.stderr.strip() or done.stdout.strip()}")
-    return done.stdout + done.stderr
-
-
-def render_boxwood(program, scene, threads, size, jobs):
-    """Seconds of the processor for each job."""
-    seconds = []
-    for samples, file in jobs:
-        start = resource.getrusage(resource.RUSAGE_CHILDREN)
-        run([program, "render", scene, "-o", file, "--samples", samples, "--size", f"{size}x{size}", "--threads",
-             threads, "--filter", "box", "--quiet", "--checkpoint", 0])
-        end = resource.getrusage(resource.RUSAGE_CHILDREN)
-        seconds.append(end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime)
-    return seconds
-
-
 def render_cycles(program, scene, threads, size, jobs):
     with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
         script.write(INSIDE_BLENDER)
         script.flush()
         said = run([program, "-b", "-noaudio", "-P", script.name, "--", scene, threads, size,
-                    *(x for job in jobs for x in job)])
+                    *(x for job in jobs for x in (job.samples, int(job.is_reference), job.file))])
     seconds = [float(found) for found in re.findall(r"^TOOK \d+ ([\d.]+)", said, re.MULTILINE)]
     if len(seconds) != len(jobs):  # it exits with 0 whatever its script does
         raise SystemExit(f"{program} did not render: {said.strip()}")
@@ -245,18 +222,10 @@ def main():
     scene = folder / "room.gltf"
     write_room(scene, options.lamps, options.mesh)
 
-    print(f"| program | CPU ms a sample of all pixels | relative MSE of {options.samples} samples | CPU seconds to {TARGET} |")
-    print("|---|---|---|---|")
-    for name, program, render in (("Boxwood", options.boxwood, render_boxwood),
-                                  ("Cycles", options.blender, render_cycles)):
-        few, many = options.samples // 4, options.samples
-        counts = (few, many, few, many, options.reference)
-        jobs = [(count, folder / f"{name.lower()}-{count}.exr") for count in counts]
-        seconds = render(program, scene, options.threads, options.size, jobs)
-        per_sample = (min(seconds[1], seconds[3]) - min(seconds[0], seconds[2])) / (many - few)
-        said = run([options.boxwood, "diff", jobs[1][1], jobs[4][1]])
-        error = float(re.search(r"relative MSE\s+([\d.e+-]+)", said).group(1))
-        print(f"| {name} | {1000 * per_sample:.1f} | {error:.5f} | {per_sample * many * error / TARGET:.2f} |", flush=True)
+    compare(options.boxwood, [
+        ("Boxwood", lambda jobs: render_boxwood(options.boxwood, scene, options.threads, (options.size,) * 2, jobs)),
+        ("Cycles", lambda jobs: render_cycles(options.blender, scene, options.threads, options.size, jobs)),
+    ], options.samples, options.reference, folder)
 
 
 if __name__ == "__main__":

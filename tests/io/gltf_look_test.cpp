@@ -32,6 +32,71 @@ TEST_F(Gltf, MaterialsBecomeOurs) {
   EXPECT_TRUE(desc.materials[3].is_thin);
 }
 
+TEST_F(Gltf, OnlyWhatIsBrighterThanWhiteIsALamp) {
+  const auto is_lit = [&](const std::string& extensions) {
+    Source source;
+    source.parts["materials"] = R"([{"emissiveFactor":[1,1,1])" + extensions + "}]";
+    source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"material":0}]}])";
+    return scene(source).is_lit_by_glow;
+  };
+  EXPECT_FALSE(is_lit(""));  // a screen
+  EXPECT_TRUE(is_lit(R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":1.5}})"));
+}
+
+TEST_F(Gltf, SpecularAndGlossMakePlasticOrMetal) {
+  Source source;
+  source.parts["extensionsRequired"] = R"(["KHR_materials_pbrSpecularGlossiness"])";
+  const auto material = [&](const std::string& gloss, const std::string& own) {
+    source.parts["materials"] =
+        R"([{"extensions":{"KHR_materials_pbrSpecularGlossiness":{)" + gloss + "}}" + own + "}]";
+    source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"material":0}]}])";
+    const SceneDesc desc = scene(source);
+    EXPECT_TRUE(desc.warnings.empty());
+    return desc.materials.at(0);
+  };
+  Material m = material(
+      R"("diffuseFactor":[0.5,0.25,0,1],"specularFactor":[0.04,0.02,0.04],"glossinessFactor":0.75)", "");
+  EXPECT_EQ(m.color, (Vec3{0.5f, 0.25f, 0}));
+  EXPECT_EQ(m.metalness, 0);
+  EXPECT_FLOAT_EQ(m.roughness, 0.25f);
+  EXPECT_FLOAT_EQ(m.ior, 1.5f);
+  expect_near(m.specular_color, {1, 0.5f, 1});
+  m = material(R"("diffuseFactor":[0,0,0,1],"specularFactor":[1,0.8,0.3])", "");
+  EXPECT_EQ(m.metalness, 1);
+  EXPECT_EQ(m.roughness, 0);
+  EXPECT_EQ(m.color, (Vec3{1, 0.8f, 0.3f}));
+  m = material(R"("specularFactor":[0,0,0])", "");
+  EXPECT_EQ(m.specular, 0);
+  // What the file says in the format's own way comes first.
+  m = material(R"("diffuseFactor":[0,0,0,1])", R"(,"pbrMetallicRoughness":{"metallicFactor":0.5})");
+  EXPECT_EQ(m.metalness, 0.5f);
+  EXPECT_EQ(m.color, (Vec3{1, 1, 1}));
+
+  source.parts["materials"] =
+      R"([{"extensions":{"KHR_materials_pbrSpecularGlossiness":{"specularGlossinessTexture":{"index":0}}}}])";
+  const SceneDesc desc = scene(source);
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "pictures of gloss");
+  EXPECT_EQ(desc.materials.at(0).metalness, 0);
+}
+
+TEST_F(Gltf, UnlitMaterialsGlowInTheirColor) {
+  Source source;
+  source.parts["extensionsRequired"] = R"(["KHR_materials_unlit","KHR_materials_variants"])";
+  source.parts["materials"] =
+      R"([{"pbrMetallicRoughness":{"baseColorFactor":[0.25,0.5,1,0.5]},"alphaMode":"BLEND","extensions":{"KHR_materials_unlit":{}}}])";
+  source.parts["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"material":0}]}])";
+  const SceneDesc desc = scene(source);
+  EXPECT_TRUE(desc.warnings.empty());
+  const Material& m = desc.materials.at(0);
+  EXPECT_EQ(m.kind, Material::Kind::matte);
+  EXPECT_EQ(m.color, (Vec3{0, 0, 0}));
+  EXPECT_EQ(m.emission, (Vec3{0.25f, 0.5f, 1}));
+  EXPECT_TRUE(m.emits_from_both_sides);
+  EXPECT_FLOAT_EQ(m.opacity, 0.5f);
+  EXPECT_FALSE(desc.is_lit_by_glow);
+}
+
 TEST_F(Gltf, ExtensionsOfMaterials) {
   Source source;
   source.parts["materials"] = R"([{"extensions":{
@@ -253,7 +318,8 @@ TEST_F(Gltf, PicturesAreDecodedOnceAndMissingOnesAreWarnings) {
   source.parts["images"] =
       R"([{"bufferView":2,"mimeType":"image/png","name":"green"},{"uri":"data:image/png;base64,)" +
       base64(png) + R"("},{"uri":"gone.png"},{"bufferView":7,"mimeType":"image/png"}])";
-  source.parts["textures"] = R"([{"source":0},{"source":1},{"source":2},{"source":0},{"source":3}])";
+  source.parts["textures"] =
+      R"([{"source":0},{"source":1},{"source":2},{"extensions":{"EXT_texture_webp":{"source":0}}},{"source":3}])";
   std::string materials;
   for (int i = 0; i < 5; ++i)
     materials += (i ? "," : "[") + std::string(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)") +

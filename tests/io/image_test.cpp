@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 
 #include "boxwood/io/file_bytes.h"
+#include "boxwood/io/picture_check.h"
 #include "io/files.h"
 
 namespace boxwood::io {
@@ -187,6 +188,12 @@ TEST_F(Pictures, BelievesNoSizeThatTheFileHasNoBytesFor) {
   exr.replace(window + 21 + 8, 8, "\x5f\xea\0\0\x5f\xea\0\0", 8);
   EXPECT_CONTAINS(message_of<FileError>([&] { read_texture(write("a.exr", exr)); }),
                   "tells of 60000 x 60000 pixels");
+}
+
+TEST_F(Pictures, BelievesAPictureOfOneColor) {
+  // A PNG of one bit for each pixel and a palette is that small.
+  EXPECT_NO_THROW(check_picture_size("white.png", 2048, 2048, 4, 605));
+  EXPECT_THROW(check_picture_size("white.png", 2048, 2048, 4, 200), FileError);
 }
 
 TEST_F(Pictures, ReadsTexturesFromMemory) {

@@ -1,4 +1,5 @@
 // What a Wavefront OBJ file becomes.
+#include "boxwood/io/image.h"
 #include "boxwood/io/load.h"
 #include "io/files.h"
 
@@ -29,6 +30,56 @@ TEST_F(Obj, SharesVerticesAndKeepsTheNearestFloats) {
   EXPECT_TRUE(mesh.uvs.empty());
   EXPECT_TRUE(desc.warnings.empty());
   EXPECT_EQ(desc.name, "quad");
+}
+
+TEST_F(Obj, PicturesCutHoles) {
+  Image grey(1, 1);
+  grey.pixels = {0.5f, 0.5f, 0.5f};
+  write_image(path("a.png"), grey);
+  write_image(path("b.png"), grey);
+  write(
+      "m.mtl",
+      "newmtl leaf\nmap_Kd a.png\nmap_d a.png\nnewmtl fence\nmap_Kd a.png\nmap_d b.png\nnewmtl wall\nmap_Kd "
+      "a.png\nnewmtl gone\nmap_d gone.png\n");
+  const SceneDesc desc = load(write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  ASSERT_EQ(desc.materials.size(), 4u);
+  EXPECT_EQ(desc.materials[0].opacity_texture.texture, desc.materials[0].color_texture);
+  EXPECT_EQ(desc.materials[0].opacity_texture.channel, NumberTexture::Channel::alpha);
+  const NumberTexture& fence = desc.materials[1].opacity_texture;
+  EXPECT_EQ(fence.channel, NumberTexture::Channel::mean);
+  EXPECT_FALSE(desc.textures.at(fence.texture.value).is_srgb);  // shares, not light
+  EXPECT_TRUE(desc.textures.at(desc.materials[1].color_texture.value).is_srgb);
+  EXPECT_FALSE(desc.materials[2].opacity_texture.texture.is_valid());
+  EXPECT_FALSE(desc.materials[3].opacity_texture.texture.is_valid());
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], "gone.png");
+}
+
+TEST_F(Obj, VerticesHaveColors) {
+  // The first has none, the third a weight before its color.
+  const SceneDesc desc = load(write("colors.obj",
+                                    "v 0 0 0\nv 1 0 0 1 0 .7353569\nv 0 1 0 1 0 1 0\nv 1 1 0 1\n"
+                                    "f 1 2 3\nf 3 2 4\n"));
+  const TriangleMesh& mesh = mesh_of(desc);
+  ASSERT_EQ(mesh.colors.size(), 4u);
+  EXPECT_EQ(mesh.colors[0], (std::array<float, 4>{1, 1, 1, 1}));
+  EXPECT_EQ(mesh.colors[1][0], 1);
+  EXPECT_EQ(mesh.colors[1][1], 0);
+  EXPECT_NEAR(mesh.colors[1][2], 0.5f, 1e-3f);
+  EXPECT_EQ(mesh.colors[2], (std::array<float, 4>{0, 1, 0, 1}));
+  EXPECT_EQ(mesh.colors[3], (std::array<float, 4>{1, 1, 1, 1}));
+  const Material& material = desc.materials.at(desc.geometries[0].material.value);
+  EXPECT_EQ(desc.textures.at(material.color_texture.value).kind, Texture::Kind::vertex_color);
+}
+
+TEST_F(Obj, ColorsOfVerticesMultiplyTheirMaterial) {
+  write("m.mtl", "newmtl red\nKd 1 0 0\n");
+  const SceneDesc desc = load(
+      write("m.obj", "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nusemtl red\nf 1 2 3\n"));
+  const Material& material = desc.materials.at(desc.geometries.at(0).material.value);
+  EXPECT_EQ(material.color, (Vec3{1, 0, 0}));
+  EXPECT_EQ(desc.textures.at(material.color_texture.value).kind, Texture::Kind::vertex_color);
+  EXPECT_EQ(desc.materials.size(), 1u);
 }
 
 TEST_F(Obj, CountsNegativeIndicesBackFromTheNewestVertex) {

@@ -11,7 +11,7 @@ TEST_F(Pbrt, WhatIsNotSupportedIsNamedOnceAndTheRestLoads) {
       "Sampler \"halton\" \"integer pixelsamples\" 4 Integrator \"path\" PixelFilter \"box\" Accelerator "
       "\"bvh\"\n"
       "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"\" \"fog\"\n"
-      "Camera \"orthographic\" WorldBegin\n"
+      "Camera \"realistic\" \"string lensfile\" \"wide.dat\" WorldBegin\n"
       "Shape \"curve\" \"float radius\" 1\nShape \"curve\"\n"
       "LightSource \"projection\" LightSource \"projection\"\n"
       "Material \"subsurface\" \"rgb reflectance\" [.4 .4 .4]\nMaterial \"subsurface\"\n"
@@ -19,7 +19,7 @@ TEST_F(Pbrt, WhatIsNotSupportedIsNamedOnceAndTheRestLoads) {
       "Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" \"bool strange\" true\n");
   EXPECT_EQ(std::get<std::vector<Sphere>>(desc.geometries.at(0).shapes)[0].radius, 5);
   const char* expected[] = {":3: scattering in media is not supported",
-                            ":4: cameras of the kind \"orthographic\"",
+                            ":4: cameras of the kind \"realistic\"",
                             ":5: shapes of the kind \"curve\"",
                             ":7: lights of the kind \"projection\"",
                             ":8: materials of the kind \"subsurface\"",
@@ -27,6 +27,28 @@ TEST_F(Pbrt, WhatIsNotSupportedIsNamedOnceAndTheRestLoads) {
                             ":11: Shape \"sphere\": the parameter \"strange\""};
   ASSERT_EQ(desc.warnings.size(), std::size(expected));
   for (std::size_t i = 0; i < std::size(expected); ++i) EXPECT_CONTAINS(desc.warnings[i], expected[i]);
+}
+
+TEST_F(Pbrt, MistakesThatPbrtForgivesAreWarnings) {
+  const SceneDesc desc = scene(
+      "WorldBegin Transform [1 0 0 0 0 1 0 0 0 0 1 5 0 0 0 1]\n" + kTriangle + "Identity ObjectBegin \"a\" " +
+      kTriangle + "ObjectEnd\nObjectBegin \"a\" Shape \"sphere\" ObjectEnd\nObjectInstance \"a\"\n" +
+      "Shape \"trianglemesh\" \"point P\" [] \"integer indices\" []\n");
+  ASSERT_EQ(desc.geometries.size(), 2u);
+  EXPECT_EQ(mesh(desc).positions[1], (Vec3{1, 0, 0}));
+  EXPECT_TRUE(std::holds_alternative<std::vector<Sphere>>(desc.geometries[1].shapes));  // the second "a"
+  ASSERT_EQ(desc.warnings.size(), 3u);
+  EXPECT_CONTAINS(desc.warnings[0], ":1: Transform is not affine");
+  EXPECT_CONTAINS(desc.warnings[1], ":5: there is already an object of the name \"a\"");
+  EXPECT_CONTAINS(desc.warnings[2], ":7: a mesh without vertices");
+}
+
+TEST_F(Pbrt, OfAParameterThatIsGivenTwiceTheLastCounts) {
+  const SceneDesc desc = scene(
+      "WorldBegin Attribute \"shape\" \"float radius\" 4\n"
+      "Shape \"sphere\" \"float radius\" 2 \"float radius\" 3\n");
+  EXPECT_EQ(std::get<std::vector<Sphere>>(desc.geometries.at(0).shapes)[0].radius, 3);
+  EXPECT_TRUE(desc.warnings.empty());
 }
 
 TEST_F(Pbrt, ErrorsNameTheFileAndTheLine) {
@@ -37,7 +59,7 @@ TEST_F(Pbrt, ErrorsNameTheFileAndTheLine) {
   expect_error(world + "Translate 1 2 nan\n", 2, "\"nan\" is not a number");
   expect_error(world + "Translate 1 2 1e39\n", 2, "\"1e39\" is not a number that a float can hold");
   expect_error(world + "Transform [1 2 3]\n", 2, "Transform has 3 numbers");
-  expect_error(world + "Transform [1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1]\n", 2, "not affine");
+  expect_error(world + "Transform [1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 0]\n", 2, "not affine");
   expect_error(world + "Rotate 90 0 0 0\n", 2, "no length");
   expect_error("LookAt 1 1 1 1 1 1 0 1 0\n", 1, "no direction");
   expect_error(world + "AttributeEnd\n", 2, "no AttributeBegin");
@@ -46,7 +68,6 @@ TEST_F(Pbrt, ErrorsNameTheFileAndTheLine) {
   expect_error(world + "ObjectInstance \"tree\"\n", 2, "no object of the name \"tree\"");
   expect_error(world + "ObjectBegin \"a\"\nObjectBegin \"b\"\n", 3, "inside of another object");
   expect_error(world + "ObjectBegin \"a\"\nObjectInstance \"a\"\n", 3, "inside of an object");
-  expect_error(world + "ObjectBegin \"a\" ObjectEnd\nObjectBegin \"a\"\n", 3, "already an object");
   expect_error(world + "Shape \"sphere\" \"float radius\" [1\n\n", 2, "list without ']'");
   expect_error(world + "Shape \"sphere\" \"float radius\" [1 2]\n", 2, "has 2 numbers, expected 1");
   expect_error(world + "Shape \"sphere\" \"float radius\" \"x\"\n", 2, "expected numbers");
@@ -77,6 +98,11 @@ TEST_F(Pbrt, ErrorsNameTheFileAndTheLine) {
   expect_error(world + "Shape \"sphere\" \"float phimax\" 0\n", 2, "\"phimax\" is 0");
   expect_error("Film \"image\" \"integer xresolution\" 0\n", 1, "0 by 720");
   EXPECT_CONTAINS(error(world), "no triangle");
+}
+
+TEST_F(Pbrt, AnIncludeMayBeEmpty) {
+  write("extra.pbrt", "");
+  EXPECT_EQ(scene("WorldBegin Include \"extra.pbrt\" Shape \"sphere\"").geometries.size(), 1u);
 }
 
 TEST_F(Pbrt, IncludesThatNeverEndAreErrors) {

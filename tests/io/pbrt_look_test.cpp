@@ -99,6 +99,44 @@ TEST_F(Pbrt, LightsWithoutSurfaces) {
   expect_near(desc.distant_lights[1].irradiance, {1, 1, 1}, .1f);  // daylight is nearly white
 }
 
+TEST_F(Pbrt, TheSensorOfVersion4MakesLightBrighter) {
+  const std::string lights =
+      " WorldBegin LightSource \"point\" LightSource \"spot\" LightSource \"distant\" LightSource "
+      "\"infinite\"\n"
+      "AreaLightSource \"diffuse\"\n" +
+      kTriangle;
+  const auto expect_brightness = [&](const std::string& head, float brightness) {
+    const SceneDesc desc = scene(head + lights);
+    EXPECT_TRUE(desc.warnings.empty());
+    EXPECT_FLOAT_EQ(desc.point_lights.at(0).intensity.x, brightness);
+    EXPECT_FLOAT_EQ(desc.spot_lights.at(0).intensity.y, brightness);
+    EXPECT_FLOAT_EQ(desc.distant_lights.at(0).irradiance.z, brightness);
+    EXPECT_FLOAT_EQ(desc.sky->zenith.x, brightness);
+    EXPECT_FLOAT_EQ(desc.sky->ground.y, brightness);
+    EXPECT_FLOAT_EQ(material(desc).emission.z, brightness);
+  };
+  expect_brightness("", 1);
+  expect_brightness("Film \"rgb\"", 1);
+  expect_brightness("Film \"rgb\" \"float iso\" 400", 4);
+  expect_brightness("Camera \"perspective\" \"float shutterclose\" .5 Film \"gbuffer\" \"float iso\" 400", 2);
+  expect_brightness("Camera \"perspective\" \"float shutterclose\" .5 Film \"image\"", 1);
+  expect_error("Film \"rgb\" \"float iso\" 0", 1, "\"iso\" is 0");
+}
+
+TEST_F(Pbrt, LightsMaySayHowMuchThereIsInAll) {
+  const SceneDesc desc = scene(
+      "WorldBegin LightSource \"point\" \"float power\" 100 \"rgb I\" [1 .5 0]\n"
+      "LightSource \"spot\" \"float power\" 100 \"float coneangle\" 60 \"float conedeltaangle\" 0\n"
+      "LightSource \"distant\" \"float illuminance\" 7\n"
+      "LightSource \"infinite\" \"float illuminance\" 6.2831853\n" +
+      kTriangle);
+  EXPECT_TRUE(desc.warnings.empty());
+  expect_near(desc.point_lights.at(0).intensity, {7.957747f, 3.978874f, 0}, 1e-4f);  // over 4 pi
+  expect_near(desc.spot_lights.at(0).intensity, splat(31.830989f), 1e-3f);           // over a quarter of that
+  expect_near(desc.distant_lights.at(0).irradiance, splat(7), 1e-5f);
+  expect_near(desc.sky->zenith, splat(2), 1e-5f);
+}
+
 TEST_F(Pbrt, ColorsComeInManyForms) {
   const auto color = [&](const std::string& parameter) {
     return material(scene("WorldBegin Material \"matte\" " + parameter + " " + kTriangle)).color;
@@ -218,6 +256,37 @@ TEST_F(Pbrt, GlossIsAsStrongAsItsColorSays) {
   EXPECT_CONTAINS(desc.warnings[0], "another color than grey");
 }
 
+TEST_F(Pbrt, GlossMayComeFromAPicture) {
+  const std::string board =
+      "WorldBegin Texture \"board\" \"color\" \"checkerboard\" \"color tex1\" [.5 .5 .5]\n"
+      "Texture \"less\" \"color\" \"scale\" \"texture tex1\" \"board\" \"color tex2\" [.5 .5 .5]\n";
+  const SceneDesc desc = scene(board + "Material \"plastic\" \"texture Ks\" \"board\"\n" + kTriangle +
+                               "Material \"uber\" \"texture Ks\" \"less\"\n" + kTriangle);
+  EXPECT_TRUE(desc.warnings.empty());
+  for (const int i : {0, 1}) {
+    EXPECT_EQ(material(desc, i).kind, Material::Kind::layered);
+    EXPECT_TRUE(material(desc, i).specular_texture.texture.is_valid());
+  }
+  EXPECT_FLOAT_EQ(material(desc, 0).specular, 1);
+  EXPECT_FLOAT_EQ(material(desc, 1).specular, .5f);
+
+  // What a substrate reflects head-on makes its index, which is one for the whole surface.
+  const SceneDesc coated = scene(board + "Material \"substrate\" \"texture Ks\" \"board\"\n" + kTriangle);
+  EXPECT_FLOAT_EQ(material(coated, 0).ior, 1.5f);
+  ASSERT_EQ(coated.warnings.size(), 1u);
+  EXPECT_CONTAINS(coated.warnings[0], ":3: a picture for the gloss");
+}
+
+TEST_F(Pbrt, APatternThatIsNotSupportedIsItsMeanColorAndOneWarning) {
+  const SceneDesc desc = scene(
+      "WorldBegin Texture \"d\" \"color\" \"dots\" \"rgb inside\" [1 0 0] \"rgb outside\" [0 .5 0]\n"
+      "Material \"matte\" \"texture Kd\" \"d\"\n" +
+      kTriangle);
+  EXPECT_EQ(material(desc).color, (Vec3{.5f, .25f, 0}));
+  ASSERT_EQ(desc.warnings.size(), 1u);
+  EXPECT_CONTAINS(desc.warnings[0], ":1: the pattern of a \"dots\" texture");
+}
+
 TEST_F(Pbrt, WhatWouldLookOtherwiseIsNamed) {
   const SceneDesc desc = scene(
       "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0] \"rgb Le\" [1 1 1]\n"
@@ -246,6 +315,25 @@ TEST_F(Pbrt, MediaAlphaAndNormalMapsBelongToTheMaterial) {
   EXPECT_FLOAT_EQ(material(desc, 3).opacity, .5f);
   ASSERT_EQ(desc.warnings.size(), 1u);
   EXPECT_CONTAINS(desc.warnings[0], ":10: there is no medium of the name \"nothing\"");
+}
+
+TEST_F(Pbrt, BumpsComeByTheNamesOfBothVersions) {
+  const SceneDesc desc = scene(
+      "WorldBegin Texture \"board\" \"float\" \"checkerboard\"\n"
+      "Texture \"high\" \"float\" \"scale\" \"texture tex1\" \"board\" \"float tex2\" .25\n"
+      "Material \"matte\" \"texture bumpmap\" \"high\"\n" +
+      kTriangle + "Material \"coateddiffuse\" \"texture displacement\" \"board\"\n" + kTriangle +
+      "Material \"matte\"\n" + kTriangle +
+      "Shape \"sphere\" Material \"matte\" \"texture bumpmap\" \"high\" Shape \"sphere\" Shape \"disk\"\n");
+  EXPECT_TRUE(desc.warnings.empty());
+  EXPECT_TRUE(std::holds_alternative<std::vector<Sphere>>(desc.geometries.at(3).shapes));
+  for (const std::size_t i : {4, 5})  // only meshes have the directions along which bumps lie
+    EXPECT_FALSE(mesh(desc, i).uvs.empty());
+  EXPECT_FLOAT_EQ(material(desc, 0).bump, .25f);
+  EXPECT_TRUE(material(desc, 0).bump_texture.texture.is_valid());
+  EXPECT_FLOAT_EQ(material(desc, 1).bump, 1);
+  EXPECT_EQ(material(desc, 0).bump_texture.texture, material(desc, 1).bump_texture.texture);
+  EXPECT_FALSE(material(desc, 2).bump_texture.texture.is_valid());
 }
 
 TEST_F(Pbrt, SpotLightsAndEnvironmentMaps) {

@@ -19,6 +19,15 @@ TEST_F(Pbrt, ReadsWordsStringsBracketsAndCommentsInAnyLayout) {
   EXPECT_TRUE(desc.warnings.empty());
 }
 
+TEST_F(Pbrt, ReadsOverCommasBehindNumbers) {
+  const SceneDesc desc = scene(
+      "WorldBegin Translate 1, 2, 3 Shape \"trianglemesh\" \"integer indices\" [0, 1, 2] "
+      "\"point P\" [0, 0, 0, 1, 0, 0, 0, 1.5, 0,]");
+  EXPECT_EQ(mesh(desc).positions, (std::vector<Vec3>{{1, 2, 3}, {2, 2, 3}, {1, 3.5f, 3}}));
+  expect_error("WorldBegin Translate 1,2,3 4 5", 1, "\"1,2,3\" is not a number");
+  expect_error("WorldBegin Translate , 4 5", 1, "\",\" is not a number");
+}
+
 TEST_F(Pbrt, TransformsComposeAsWritten) {
   const SceneDesc desc = scene("WorldBegin Translate 1 2 3 Rotate 90 0 0 1 Scale 2 2 2\n" + kTriangle +
                                "Identity ConcatTransform [1 0 0 0  0 1 0 0  0 0 1 0  5 6 7 1] " + kTriangle +
@@ -92,6 +101,28 @@ TEST_F(Pbrt, CameraLooksForwardAndKeepsOrMirrorsTheWorldAsPbrtDoes) {
   EXPECT_FLOAT_EQ(desc.camera->lens_radius, .2f);
   EXPECT_FLOAT_EQ(desc.camera->focus_distance, 8);
   EXPECT_FLOAT_EQ(length(desc.camera->world_from_camera.z), 1);
+}
+
+TEST_F(Pbrt, OtherCamerasStandInTheSamePlace) {
+  const auto camera = [&](const std::string& text) {
+    return *scene(text + " WorldBegin " + kTriangle).camera;
+  };
+  // Parallel rays: two units across the shorter side, by the scale of the camera's frame.
+  EXPECT_EQ(camera("Camera \"orthographic\"").orthographic_size, 2);
+  EXPECT_EQ(camera("Scale .5 .5 .5 Camera \"orthographic\"").orthographic_size, 4);
+  EXPECT_EQ(camera("Camera \"orthographic\" \"float screenwindow\" [-6 6 -3 3]").orthographic_size, 6);
+  EXPECT_EQ(camera("Camera \"perspective\"").orthographic_size, 0);
+
+  // A wider window is a wider angle.
+  EXPECT_FLOAT_EQ(camera("Camera \"perspective\" \"float halffov\" 20").fov_deg, 40);
+  EXPECT_NEAR(camera("Camera \"perspective\" \"float screenwindow\" [-3 3 -2 2]").fov_deg, 126.8699f, 1e-3f);
+
+  const std::string spherical =
+      "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"spherical\" \"string mapping\" \"equalarea\"";
+  expect_near(seen(camera(spherical), {1, 2, 0}), {1, 2, 5});
+  EXPECT_EQ(scene(spherical + " WorldBegin " + kTriangle).warnings.size(), 1u);
+  EXPECT_EQ(camera("Camera \"perspective\" \"float fov\" 80 Camera \"realistic\"").fov_deg, 80);
+  expect_error("Camera \"orthographic\" \"float screenwindow\" [1 -1 -1 1]", 1, "left < right");
 }
 
 TEST_F(Pbrt, CameraCoordinateSystemPlacesThingsBeforeTheCamera) {

@@ -115,6 +115,33 @@ TEST_F(Ply, TurnsEverySecondTriangleOfAStrip) {
   EXPECT_EQ(mesh.indices, (Triangles{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}}));
 }
 
+TEST_F(Ply, VerticesHaveColors) {
+  const auto scene = [&](const std::string& type, const std::string& colors) {
+    std::string header = "ply\nformat ascii 1.0\nelement vertex 3\n";
+    for (const std::string name : {"float x", "float y", "float z"}) header += "property " + name + "\n";
+    for (const std::string name : {"red", "green", "blue"}) header += "property " + type + " " + name + "\n";
+    return load(
+        write("a.ply", header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                           "0 0 0 " + colors + "\n1 0 0 " + colors + "\n0 1 0 " + colors + "\n3 0 1 2\n"));
+  };
+  const SceneDesc desc = scene("uchar", "255 188 0");
+  const TriangleMesh& mesh = std::get<TriangleMesh>(desc.geometries.at(0).shapes);
+  ASSERT_EQ(mesh.colors.size(), 3u);
+  EXPECT_EQ(mesh.colors[0][0], 1);
+  EXPECT_NEAR(mesh.colors[2][1], 0.5f, 0.005f);  // codes are sRGB
+  EXPECT_EQ(mesh.colors[2][2], 0);
+  EXPECT_EQ(mesh.colors[0][3], 1);
+  const Material& material = desc.materials.at(desc.geometries[0].material.value);
+  EXPECT_EQ(material.color, (Vec3{1, 1, 1}));
+  EXPECT_EQ(desc.textures.at(material.color_texture.value).kind, Texture::Kind::vertex_color);
+
+  const SceneDesc floats = scene("float", "1 .7353569 nan");
+  const auto& color = std::get<TriangleMesh>(floats.geometries.at(0).shapes).colors.at(1);
+  EXPECT_EQ(color[0], 1);
+  EXPECT_NEAR(color[1], 0.5f, 1e-3f);
+  EXPECT_EQ(color[2], 0);
+}
+
 TEST_F(Ply, SaysWhereAFileIsWrong) {
   const std::string vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";

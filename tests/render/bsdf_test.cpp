@@ -125,6 +125,24 @@ TEST(Bsdf, WhiteFurnaceInsideOfGlass) {
           << width << " at " << cosine;
 }
 
+TEST(Bsdf, GlassThatDoesNotBendLightLetsItPassHoweverRough) {
+  for (const float ior : {1.0f, 1.00001f, 1.01f})
+    for (const float width : {0.0f, 0.1f, 1.0f})
+      for (const bool from_inside : {false, true}) {
+        Material air = material_of_kind(Kind::glass, splat(1), width);
+        air.ior = ior;
+        for (const float cosine : {1.0f, 0.6f, 0.2f})
+          EXPECT_NEAR(albedo(air, cosine, from_inside), 1, 0.02f) << ior << " " << width << " at " << cosine;
+      }
+  Material air = layered(0, 1, 0.5f);
+  air.ior = 1;
+  const Vec3 outgoing = at_cosine(0.6f);
+  const auto sample = Probe(air, flat_surface({0, 0, 1}), outgoing).bsdf.sample(0.5f, {0.5f, 0.5f});
+  ASSERT_TRUE(sample);
+  EXPECT_LT(length(sample->direction + outgoing), 1e-6f);
+  EXPECT_NEAR(sample->weight.x, 1, 1e-6f);
+}
+
 TEST(Bsdf, ColoredMaterialsReflectLess) {
   for (const float cosine : {1.0f, 0.7f, 0.3f, 0.05f}) {
     EXPECT_NEAR(albedo(material_of_kind(Kind::matte, splat(0.3f)), cosine), 0.3f, 1e-4f);

@@ -58,6 +58,56 @@ TEST(NormalMap, BendsAlongThePicturesOwnDirections) {
   expect_direction(mapped(map), {-1, 0, 1});
 }
 
+/// The normal of a square whose heights grow from 0 to `height` between u = -1/4 and 1/4, mirrored or not.
+Vec3 bumped(float height, bool is_mirrored) {
+  SceneDesc desc;
+  Texture steps;
+  steps.width = 2;
+  steps.height = 1;
+  steps.texels = {{255, 255, 255, 255}, {0, 0, 0, 255}};
+  steps.is_srgb = false;
+  const TextureId id = desc.add(steps);
+  TriangleMesh mesh = square();
+  if (is_mirrored)
+    for (Vec2& uv : mesh.uvs) uv.x = -uv.x;
+  desc.add(std::move(mesh));
+  const Scene scene(std::move(desc));
+  const Ray ray{{0, 0.2f, 1}, 0, {0, 0, -1}};
+  const Hit hit = scene.closest_hit(ray);
+  const Surface surface = surface_at(scene, ray, hit);
+  return bumped_normal(scene, hit, surface, surface.shading_normal, height, {id, {}});
+}
+
+TEST(NormalMap, BumpsLeanAwayFromWhereTheyRise) {
+  expect_direction(bumped(0.5f, false), {-1, 0, 1});
+  expect_direction(bumped(-0.25f, false), {0.5f, 0, 1});
+  expect_direction(bumped(0.5f, true), {1, 0, 1});
+  expect_direction(bumped(0, false), {0, 0, 1});
+}
+
+TEST(NormalMap, BumpsShowInThePicture) {
+  // A slope that leans away from a lamp at the horizon gets less of it.
+  const auto seen = [](float height) {
+    SceneDesc desc;
+    Texture steps;
+    steps.width = 2;
+    steps.height = 1;
+    steps.texels = {{255, 255, 255, 255}, {0, 0, 0, 255}};
+    const TextureId id = desc.add(steps);
+    Material matte;
+    matte.bump = height;
+    matte.bump_texture = {id, {}};
+    desc.add(square(), desc.add(matte));
+    desc.distant_lights.push_back({normalize(Vec3{-1, 0, -1}), splat(1)});
+    const Scene scene(std::move(desc));
+    return mean_radiance(scene, Ray{{0, 0.2f, 1}, 0, {0, 0, -1}}, 16).x;
+  };
+  const float level = seen(0);
+  EXPECT_GT(level, 0.1f);
+  EXPECT_LT(seen(0.25f), 0.6f * level);
+  EXPECT_GT(seen(-0.25f), 1.1f * level);
+}
+
 /// What is seen of a black square under a smooth coat, from above. The coat reflects 4% of a lamp of radiance
 /// 1, where it lies so that the light comes this way. The map bends by half of its slopes.
 float seen_of_coat(const Material& black, Vec3 lamp_at) {

@@ -184,6 +184,11 @@ TEST(Path, ASceneWithoutLightIsShownUnderThePlainSky) {
   EXPECT_LT(max_component(lit), 1.0f);
 
   EXPECT_FALSE(has_light(desc));
+  SceneDesc glowing = desc;
+  glowing.materials.push_back({.emission = splat(1)});
+  EXPECT_TRUE(has_light(glowing));
+  glowing.is_lit_by_glow = false;  // a model with a detail that glows
+  EXPECT_FALSE(has_light(glowing));
   desc.point_lights.push_back({{0, 100, 0}, splat(1)});
   EXPECT_TRUE(has_light(desc));
   const Scene dark(desc);

@@ -11,13 +11,18 @@
 #include <tiny_gltf.h>
 
 #include "boxwood/io/formats.h"
+#include "boxwood/io/gltf_accessor.h"
 #include "boxwood/io/gltf_material.h"
 #include "boxwood/io/gltf_mesh.h"
+#include "boxwood/io/gltf_pose.h"
+#include "boxwood/io/gltf_value.h"
 
 namespace boxwood::io {
 namespace gltf {
 namespace {
 
+// Each node has its own copy of what it bends, and a few bytes make a node.
+constexpr std::size_t kMostPosed = std::size_t(1) << 23, kMostCopies = std::size_t(1) << 22;
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 class Builder {
@@ -36,28 +41,29 @@ class Builder {
     std::vector<Visit> stack;
     const std::vector<int> roots = root_nodes();
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
-    std::vector<bool> is_visited(model_.nodes.size());
+    world_from_node_.resize(model_.nodes.size());
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
       const std::string where = "node " + std::to_string(visit.node);
       if (visit.node < 0 || std::size_t(visit.node) >= model_.nodes.size())
         file_.fail(where, "the node does not exist, there are " + std::to_string(model_.nodes.size()));
-      if (is_visited[visit.node])
+      if (world_from_node_[visit.node])
         file_.fail(where, "the node is reached twice, but the nodes must form trees");
-      is_visited[visit.node] = true;
 
       const tinygltf::Node& node = model_.nodes[visit.node];
       const Affine3 world_from_node = visit.world_from_parent * local_transform(node, where);
       if (!is_finite(world_from_node.x) || !is_finite(world_from_node.y) || !is_finite(world_from_node.z) ||
           !is_finite(world_from_node.origin))
         file_.fail(where, "the transform is not finite");
-      if (node.mesh != -1) place_mesh(node, world_from_node, where);
+      world_from_node_[visit.node] = world_from_node;
+      if (node.mesh != -1) place_mesh(visit.node, where);
       if (node.camera != -1) add_camera(node.camera, world_from_node, where);
       add_light(node, world_from_node, where);
       for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
         stack.push_back({*child, world_from_node});
     }
+    place_posed_meshes();
     if (!model_.animations.empty())
       warn(desc_.warnings, file_, "",
            "animations are not supported; all stands as in the file's pose at rest");
@@ -127,16 +133,13 @@ class Builder {
     return out;
   }
 
-  void place_mesh(const tinygltf::Node& node, const Affine3& world_from_node, const std::string& where) {
+  void place_mesh(int index, const std::string& where) {
+    const tinygltf::Node& node = model_.nodes[index];
     if (node.mesh < 0 || std::size_t(node.mesh) >= model_.meshes.size())
       file_.fail(where, "mesh " + std::to_string(node.mesh) + " does not exist, there are " +
                             std::to_string(model_.meshes.size()));
-    if (node.skin != -1)
-      warn(desc_.warnings, file_, "", "skins are not supported; meshes have their plain form");
-    try {
-      (void)inverse(world_from_node);
-    } catch (const std::invalid_argument&) {  // animators hide things by scaling them to nothing
-      warn(desc_.warnings, file_, where, "the transform flattens its mesh to nothing; it is left out");
+    if (node.skin != -1 || !morph_weights(file_, index).empty()) {
+      posed_.push_back(index);  // joints may stand further on
       return;
     }
 
@@ -148,7 +151,82 @@ class Builder {
         if (std::optional<Geometry> geometry = read_primitive(file_, node.mesh, p, desc_.warnings))
           ids->push_back(desc_.add(std::move(*geometry)));
     }
-    for (const GeometryId id : *ids) desc_.add(Instance{id, world_from_node, {}});
+    for (const Affine3& node_from_copy : copies(node, where))
+      for (const GeometryId id : *ids) place(id, *world_from_node_[index] * node_from_copy, where);
+  }
+
+  /// Where a node's mesh stands below the node: once, unless EXT_mesh_gpu_instancing repeats it.
+  std::vector<Affine3> copies(const tinygltf::Node& node, const std::string& where) {
+    const tinygltf::Value* instancing = extension(node.extensions, "EXT_mesh_gpu_instancing");
+    if (instancing == nullptr) return {Affine3::identity()};
+    std::vector<Affine3> places;
+    const auto read = [&](const char* name, const auto& read_vectors, const auto& apply) {
+      const int accessor = whole_number(member(instancing, "attributes"), name, -1);
+      if (accessor == -1) return;
+      const auto vectors = read_vectors(file_, accessor, where + ", " + name);
+      if (places.empty()) places.resize(vectors.size());
+      if (vectors.size() != places.size())
+        file_.fail(where, std::string(name) + " has " + std::to_string(vectors.size()) +
+                              " elements, expected one for each of the " + std::to_string(places.size()) +
+                              " copies of the mesh");
+      for (std::size_t i = 0; i < places.size(); ++i) apply(places[i], vectors[i]);
+    };
+    // Turned, then scaled along its own axes, then moved.
+    read("ROTATION", read_vec4, [&](Affine3& m, const std::array<float, 4>& q) {
+      m = rotation({q[0], q[1], q[2], q[3]}, where);
+    });
+    read("SCALE", read_vec3, [](Affine3& m, Vec3 by) { m = {m.x * by.x, m.y * by.y, m.z * by.z, {}}; });
+    read("TRANSLATION", read_vec3, [](Affine3& m, Vec3 by) { m.origin = by; });
+    copy_count_ += places.size();
+    if (copy_count_ > kMostCopies)
+      file_.fail(where, "there are more than " + std::to_string(kMostCopies) + " copies of meshes");
+    return places;
+  }
+
+  void place(GeometryId id, const Affine3& world_from_object, const std::string& where) {
+    try {
+      (void)inverse(world_from_object);
+    } catch (const std::invalid_argument&) {  // animators hide things by scaling them to nothing
+      warn(desc_.warnings, file_, where, "the transform flattens its mesh to nothing; it is left out");
+      return;
+    }
+    desc_.add(Instance{id, world_from_object, {}});
+  }
+
+  /// Meshes whose form depends on their node.
+  void place_posed_meshes() {
+    std::size_t left = kMostPosed;
+    for (const int index : posed_) {
+      const tinygltf::Node& node = model_.nodes[index];
+      const std::string where = "node " + std::to_string(index);
+      const std::vector<float> weights = morph_weights(file_, index);
+      std::optional<std::vector<Affine3>> joints;
+      if (node.skin != -1) {
+        joints = joint_transforms(file_, node.skin, world_from_node_);
+        if (!joints)
+          warn(desc_.warnings, file_, where,
+               "a joint of its skin is not in the scene; the mesh has its plain form");
+      }
+      // Joints take it to the world; where the node stands does not count.
+      std::vector<Affine3> places{Affine3::identity()};
+      if (!joints) {
+        places = copies(node, where);
+        for (Affine3& place : places) place = *world_from_node_[index] * place;
+      }
+      for (std::size_t p = 0; p < model_.meshes[node.mesh].primitives.size(); ++p) {
+        std::optional<Geometry> geometry = read_primitive(file_, node.mesh, p, desc_.warnings);
+        if (!geometry) continue;
+        auto& mesh = std::get<TriangleMesh>(geometry->shapes);
+        if (mesh.positions.size() > left)
+          file_.fail(where, "the meshes with skins and morph targets have more than " +
+                                std::to_string(kMostPosed) + " vertices");
+        left -= mesh.positions.size();
+        morph(file_, node.mesh, p, weights, mesh);
+        if (joints) bend(file_, node.mesh, p, *joints, mesh);
+        const GeometryId id = desc_.add(std::move(*geometry));
+        for (const Affine3& place_of_copy : places) place(id, place_of_copy, where);
+      }
+    }
   }
 
   /// Moves meshes that have one instance to where it shows them.
@@ -270,6 +348,9 @@ class Builder {
   const File& file_;
   const tinygltf::Model& model_;
   SceneDesc desc_;
+  std::vector<std::optional<Affine3>> world_from_node_;  // of those that are in the scene
+  std::size_t copy_count_ = 0;
+  std::vector<int> posed_;  // nodes whose mesh has a form of its own there
   // By mesh: its primitives, once it was needed.
   std::vector<std::optional<std::vector<GeometryId>>> geometries_;
 };

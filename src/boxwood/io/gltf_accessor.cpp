@@ -159,39 +159,43 @@ void check_count(const File& file, const tinygltf::Accessor& accessor, std::size
     (void)locate(file, accessor.bufferView, accessor.byteOffset, accessor.count, element_size, true, where);
 }
 
-void set(Vec2& out, const std::array<float, 4>& numbers) {
-  out = {numbers[0], numbers[1]};
+void set(Vec2& out, const float* n) {
+  out = {n[0], n[1]};
 }
-void set(Vec3& out, const std::array<float, 4>& numbers) {
-  out = {numbers[0], numbers[1], numbers[2]};
+void set(Vec3& out, const float* n) {
+  out = {n[0], n[1], n[2]};
 }
-void set(std::array<float, 4>& out, const std::array<float, 4>& numbers) {
-  out = numbers;
+void set(std::array<float, 4>& out, const float* n) {
+  out = {n[0], n[1], n[2], n[3]};
+}
+void set(Affine3& out, const float* n) {  // column by column
+  out = {{n[0], n[1], n[2]}, {n[4], n[5], n[6]}, {n[8], n[9], n[10]}, {n[12], n[13], n[14]}};
 }
 
-/// Vectors of 2, 3 or 4 components; what is left of a `Vector` is 0, 0, 0, 1.
+/// Vectors of 2, 3 or 4 components, what is left of a `Vector` is 0, 0, 0, 1; or matrices of 16.
 template <class Vector, std::size_t components>
 std::vector<Vector> read_vectors(const File& file, int index, const std::string& asked_by) {
   const std::string where = asked_by + ", accessor " + std::to_string(index);
   const tinygltf::Accessor& accessor = find_accessor(file, index, where);
   constexpr std::array kTypes{TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
+  constexpr int kType = components == 16 ? TINYGLTF_TYPE_MAT4 : kTypes[components <= 4 ? components - 2 : 0];
   const std::size_t size = component_size(accessor.componentType);
-  if (accessor.type != kTypes[components - 2] || size == 0)
+  if (accessor.type != kType || size == 0)
     file.fail(where, "the accessor is of type " + std::to_string(accessor.type) + " with component type " +
-                         std::to_string(accessor.componentType) + ", expected VEC" +
-                         std::to_string(components) + " of numbers");
+                         std::to_string(accessor.componentType) + ", expected " +
+                         (components == 16 ? "MAT4" : "VEC" + std::to_string(components)) + " of numbers");
   check_count(file, accessor, size * components, where);
 
   std::vector<Vector> out(accessor.count);
   for_each_element(file, accessor, size * components, where, [&](std::size_t i, const std::byte* at) {
-    std::array<float, 4> values{0, 0, 0, 1};
+    std::array<float, 16> values{0, 0, 0, 1};
     for (std::size_t c = 0; c < components; ++c) {
       values[c] = component(at + c * size, accessor.componentType, accessor.normalized);
       if (!std::isfinite(values[c]))
         file.fail(where, "element " + std::to_string(i) + ", number " + std::to_string(c) + " is " +
                              std::to_string(values[c]) + ", expected a finite number");
     }
-    set(out[i], values);
+    set(out[i], values.data());
   });
   return out;
 }
@@ -222,6 +226,14 @@ std::vector<Vec2> read_vec2(const File& file, int accessor, const std::string& w
 
 std::vector<Vec3> read_vec3(const File& file, int accessor, const std::string& where) {
   return read_vectors<Vec3, 3>(file, accessor, where);
+}
+
+std::vector<std::array<float, 4>> read_vec4(const File& file, int accessor, const std::string& where) {
+  return read_vectors<std::array<float, 4>, 4>(file, accessor, where);
+}
+
+std::vector<Affine3> read_affine(const File& file, int accessor, const std::string& where) {
+  return read_vectors<Affine3, 16>(file, accessor, where);
 }
 
 std::vector<std::array<float, 4>> read_colors(const File& file, int accessor, const std::string& where) {

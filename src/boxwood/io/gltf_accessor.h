@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "boxwood/core/vec.h"
+#include "boxwood/core/affine.h"
 #include "boxwood/io/gltf_model.h"
 
 namespace boxwood::io::gltf {
@@ -20,6 +20,10 @@ namespace boxwood::io::gltf {
 /// number is not finite.
 std::vector<Vec2> read_vec2(const File& file, int accessor, const std::string& where);
 std::vector<Vec3> read_vec3(const File& file, int accessor, const std::string& where);
+/// Of four components, such as quaternions, joints and weights.
+std::vector<std::array<float, 4>> read_vec4(const File& file, int accessor, const std::string& where);
+/// Matrices of four by four, whose last row is taken for 0 0 0 1.
+std::vector<Affine3> read_affine(const File& file, int accessor, const std::string& where);
 /// Of three components or four; the fourth is 1 where there are three.
 std::vector<std::array<float, 4>> read_colors(const File& file, int accessor, const std::string& where);
 

@@ -6,56 +6,12 @@
 #include <set>
 #include <tuple>
 
-#include <tiny_gltf.h>
-
 #include "boxwood/io/gltf_accessor.h"
+#include "boxwood/io/gltf_value.h"
 #include "boxwood/io/picture_cache.h"
 
 namespace boxwood::io::gltf {
 namespace {
-
-Vec3 color_of(const std::vector<double>& numbers, Vec3 otherwise) {
-  if (numbers.size() < 3) return otherwise;
-  const Vec3 color{float(numbers[0]), float(numbers[1]), float(numbers[2])};
-  return is_finite(color) ? max(color, Vec3{0, 0, 0}) : otherwise;
-}
-
-float clamp01(double value) {
-  return static_cast<float>(std::fmin(std::fmax(value, 0), 1));
-}
-
-using Extensions = tinygltf::ExtensionMap;
-
-/// A member of a JSON object; null when there is none.
-const tinygltf::Value* member(const tinygltf::Value* object, const char* name) {
-  if (object == nullptr || !object->IsObject() || !object->Has(name)) return nullptr;
-  return &object->Get(std::string(name));
-}
-const tinygltf::Value* extension(const Extensions& extensions, const char* name) {
-  const auto found = extensions.find(name);
-  return found != extensions.end() && found->second.IsObject() ? &found->second : nullptr;
-}
-
-double number(const tinygltf::Value* object, const char* name, double otherwise) {
-  const tinygltf::Value* value = member(object, name);
-  return value != nullptr && value->IsNumber() ? value->GetNumberAsDouble() : otherwise;
-}
-
-/// Up to `count` numbers of an array; `otherwise` for what is not there.
-std::array<double, 3> numbers(const tinygltf::Value* object, const char* name,
-                              std::array<double, 3> otherwise, std::size_t count) {
-  const tinygltf::Value* value = member(object, name);
-  if (value == nullptr || !value->IsArray() || value->ArrayLen() < count) return otherwise;
-  for (std::size_t i = 0; i < count; ++i)
-    if (const tinygltf::Value& item = value->Get(static_cast<int>(i)); item.IsNumber())
-      otherwise[i] = item.GetNumberAsDouble();
-  return otherwise;
-}
-
-Vec3 color(const tinygltf::Value* object, const char* name, Vec3 otherwise) {
-  const auto [x, y, z] = numbers(object, name, {otherwise.x, otherwise.y, otherwise.z}, 3);
-  return color_of({x, y, z}, otherwise);
-}
 
 /// A texture as a material uses it.
 struct TextureUse {
@@ -63,11 +19,6 @@ struct TextureUse {
   int uv_set = 0;
   const tinygltf::Value* transform = nullptr;  // KHR_texture_transform
 };
-
-int whole_number(const tinygltf::Value* object, const char* name, int otherwise) {
-  const tinygltf::Value* value = member(object, name);
-  return value != nullptr && value->IsInt() ? value->GetNumberAsInt() : otherwise;
-}
 
 /// The transform has the last word on the set of coordinates.
 TextureUse use_of(int texture, int uv_set, const tinygltf::Value* transform) {
@@ -83,9 +34,12 @@ TextureUse use_of(const tinygltf::Value* object, const char* name) {
                 member(member(info, "extensions"), "KHR_texture_transform"));
 }
 
+constexpr const char* kSpecularGloss = "KHR_materials_pbrSpecularGlossiness";
+
 /// Every texture of a material, whatever for; the base color's comes first.
 std::vector<TextureUse> textures_of(const tinygltf::Material& m) {
   std::vector<TextureUse> uses = {use_of(m.pbrMetallicRoughness.baseColorTexture),
+                                  use_of(extension(m.extensions, kSpecularGloss), "diffuseTexture"),
                                   use_of(m.pbrMetallicRoughness.metallicRoughnessTexture),
                                   use_of(m.normalTexture), use_of(m.emissiveTexture)};
   constexpr std::pair<const char*, const char*> kOthers[] = {
@@ -120,7 +74,8 @@ UvSets uv_sets_of(const tinygltf::Material& material) {
 int image_of(const File& file, int texture) {
   const auto& textures = file.model->textures;
   if (texture < 0 || std::size_t(texture) >= textures.size()) return -1;
-  const int image = textures[texture].source;
+  const int image = whole_number(extension(textures[texture].extensions, "EXT_texture_webp"), "source",
+                                 textures[texture].source);
   return image >= 0 && std::size_t(image) < file.model->images.size() ? image : -1;
 }
 
@@ -178,9 +133,16 @@ class MaterialMaker {
     m.kind = Material::Kind::layered;
     m.roughness_scale = Material::RoughnessScale::square_root_of_alpha;
     take_base(source, m, is_colored);
+    if (source.extensions.count("KHR_materials_unlit") != 0) {
+      show_unlit(m);
+      return m;
+    }
     take_emission(source, m);
     take_layers(source.extensions, m);
     take_inside(source.extensions, m);
+    if (const tinygltf::Value* gloss = extension(source.extensions, kSpecularGloss);
+        gloss && !has_metalness(source))
+      take_specular_gloss(source, *gloss, m, is_colored);
     return m;
   }
 
@@ -204,11 +166,26 @@ class MaterialMaker {
     m.normal_texture = texture_id(use_of(source.normalTexture), false);
     m.normal_scale = static_cast<float>(source.normalTexture.scale);
 
-    // Opacity is the alpha of the base color, where the material says that it counts.
+    take_opacity(source, pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[3] : 1, m);
+  }
+
+  /// Opacity is the alpha of the base color, where the material says that it counts.
+  static void take_opacity(const tinygltf::Material& source, double alpha, Material& m) {
     if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
-    m.opacity = pbr.baseColorFactor.size() == 4 ? clamp01(pbr.baseColorFactor[3]) : 1;
+    m.opacity = clamp01(alpha);
     m.opacity_texture = {m.color_texture, Channel::alpha};
     if (source.alphaMode == "MASK") m.alpha_cutoff = static_cast<float>(std::fmax(source.alphaCutoff, 0));
+  }
+
+  /// Shows its color whatever the light is: black, and glowing so.
+  static void show_unlit(Material& m) {
+    m.kind = Material::Kind::matte;
+    m.emission = m.color;
+    m.emission_texture = m.color_texture;
+    m.emits_from_both_sides = true;
+    m.color = {0, 0, 0};
+    m.color_texture = m.normal_texture = {};
+    m.roughness_texture = m.metalness_texture = {};
   }
 
   void take_emission(const tinygltf::Material& source, Material& m) {
@@ -242,6 +219,49 @@ class MaterialMaker {
     m.sheen_color_texture = texture_id(use_of(sheen, "sheenColorTexture"), true);
     m.sheen_roughness = clamp01(number(sheen, "sheenRoughnessFactor", 0));
     m.sheen_roughness_texture = {texture_id(use_of(sheen, "sheenRoughnessTexture"), false), Channel::alpha};
+  }
+
+  /// Most files of that kind say the same a second time, in the format's own way.
+  static bool has_metalness(const tinygltf::Material& source) {
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    return pbr.baseColorTexture.index >= 0 || pbr.metallicRoughnessTexture.index >= 0 ||
+           pbr.metallicFactor != 1 || pbr.roughnessFactor != 1 ||
+           color_of(pbr.baseColorFactor, {1, 1, 1}) != Vec3{1, 1, 1};
+  }
+
+  /// A matte color below a boundary that reflects so much of each color head-on; or metal, where there is
+  /// nothing below.
+  void take_specular_gloss(const tinygltf::Material& source, const tinygltf::Value& gloss, Material& m,
+                           bool is_colored) {
+    constexpr float kBlack = 0.04f, kHighestHeadOn = 0.66f;  // of the highest index that the renderer takes
+    const Vec3 specular = min(color(&gloss, "specularFactor", {1, 1, 1}), {1, 1, 1});
+    const float most = max_component(specular);
+    const TextureUse picture = use_of(&gloss, "diffuseTexture");
+    m.color = color(&gloss, "diffuseFactor", {1, 1, 1});
+    m.color_texture = texture_id(picture, true);
+    if (picture.texture >= 0 && !m.color_texture.is_valid()) m.color *= 0.5f;
+    m.metalness = picture.texture < 0 && max_component(m.color) <= kBlack && most > kBlack ? 1.0f : 0.0f;
+    if (m.metalness > 0) m.color = specular;
+    if (is_colored) m.color_texture = times_vertex_colors(m.color_texture);
+    const tinygltf::Value* diffuse = member(&gloss, "diffuseFactor");
+    const bool has_alpha = diffuse != nullptr && diffuse->IsArray() && diffuse->ArrayLen() == 4;
+    take_opacity(source, has_alpha && diffuse->Get(3).IsNumber() ? diffuse->Get(3).GetNumberAsDouble() : 1,
+                 m);
+    m.roughness = 1 - clamp01(number(&gloss, "glossinessFactor", 1));
+    m.specular = most > 0 ? 1 : 0;
+    m.specular_color = most > 0 ? specular / most : specular;
+    const float root = std::sqrt(std::fmin(most, kHighestHeadOn));
+    if (most > 0) m.ior = (1 + root) / (1 - root);
+    if (member(&gloss, "specularGlossinessTexture") != nullptr) {
+      // The picture may turn every part of it into something else; what is most common stands in.
+      m.metalness = 0;
+      m.specular = 1;
+      m.specular_color = {1, 1, 1};
+      m.ior = 1.5f;
+      m.roughness = 0.5f;
+      warn(desc_.warnings, file_, "",
+           "pictures of gloss (specularGlossinessTexture) are not supported; plastic stands in");
+    }
   }
 
   /// What gets through, and what the inside takes away.
@@ -357,9 +377,15 @@ void add_materials(const File& file, Executor& executor, SceneDesc& desc) {
       used.insert(id);
       if (primitive.attributes.count("COLOR_0") != 0) colored.insert(id);
     }
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    desc.add(
-        maker.make(materials[i], "material " + std::to_string(i), colored.count(static_cast<int>(i)) != 0));
+  desc.is_lit_by_glow = false;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const int id = static_cast<int>(i);
+    const MaterialId added =
+        desc.add(maker.make(materials[i], "material " + std::to_string(i), colored.count(id) != 0));
+    // What is no brighter than white is there to be seen; lamps need KHR_materials_emissive_strength.
+    if (used.count(id) != 0 && max_component(desc.materials[added.value].emission) > 1)
+      desc.is_lit_by_glow = true;
+  }
   if (used.count(kNone) != 0) desc.add(maker.make({}, "no material", colored.count(kNone) != 0));
 }
 

@@ -108,9 +108,6 @@ std::optional<Geometry> read_primitive(const File& file, std::size_t mesh_index,
          "the last triangle has only " + std::to_string(indices.size() % 3) + " vertices and is left out");
   mesh.indices = triangles_of(indices, primitive.mode);
 
-  if (!primitive.targets.empty())
-    warn(warnings, file, "", "morph targets are not supported; meshes have their plain form");
-
   Geometry geometry{std::move(mesh), {}, {}, source.name};
   if (source.primitives.size() > 1) geometry.name += " " + std::to_string(primitive_index);
   const std::size_t materials = file.model->materials.size();

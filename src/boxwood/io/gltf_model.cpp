@@ -14,11 +14,13 @@
 namespace boxwood::io::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 10> kSupportedExtensions = {
+// Of the variants the one that a file begins with is shown.
+constexpr std::array<std::string_view, 15> kSupportedExtensions = {
     "KHR_lights_punctual",     "KHR_mesh_quantization",      "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_volume",
     "KHR_materials_clearcoat", "KHR_materials_sheen",        "KHR_materials_specular",
-    "KHR_texture_transform"};
+    "KHR_materials_unlit",     "KHR_materials_variants",     "KHR_texture_transform",
+    "EXT_texture_webp",        "EXT_mesh_gpu_instancing",    "KHR_materials_pbrSpecularGlossiness"};
 
 /// A library's message in one line that is not too long (tinygltf quotes whole data URIs).
 std::string one_line(std::string text) {
@@ -119,6 +121,29 @@ bool is_supported(const std::string& extension) {
          kSupportedExtensions.end();
 }
 
+void expect_supported(const File& file, const std::vector<std::string>& required) {
+  for (const std::string& extension : required)
+    if (!is_supported(extension))
+      file.fail("extensionsRequired",
+                "the file requires the extension " + one_line(extension) + ", which is not supported");
+}
+
+/// What a file requires, by its text: what is compressed by an extension does not look like a glTF file to
+/// the library.
+std::vector<std::string> required_by(std::string_view json) {
+  std::vector<std::string> names;
+  const std::size_t begin = json.find('[', std::min(json.find("\"extensionsRequired\""), json.size()));
+  if (begin == std::string_view::npos) return names;
+  std::string_view list = json.substr(begin, json.find(']', begin) - begin);
+  for (std::size_t open = list.find('"'); open != std::string_view::npos; open = list.find('"')) {
+    const std::size_t close = list.find('"', open + 1);
+    if (close == std::string_view::npos) break;
+    names.emplace_back(list.substr(open + 1, close - open - 1));
+    list.remove_prefix(close + 1);
+  }
+  return names;
+}
+
 }  // namespace
 
 void File::fail(const std::string& place, const std::string& message) const {
@@ -137,7 +162,8 @@ File read_model(const std::filesystem::path& path, std::vector<std::string>& war
   if (bytes.size() > 0xffffffffu)
     file.fail("", "the file is larger than 4 GiB, which the format does not allow");
   const bool is_binary = bytes.starts_with("glTF");
-  check_depth(file, is_binary ? check_container(file, bytes) : std::string_view(bytes));
+  const std::string_view json = is_binary ? check_container(file, bytes) : std::string_view(bytes);
+  check_depth(file, json);
 
   std::string base = path.parent_path().string();
   if (base.empty()) base = ".";
@@ -159,14 +185,12 @@ File read_model(const std::filesystem::path& path, std::vector<std::string>& war
   } catch (const std::exception& exception) {  // of the library, or out of memory
     error = exception.what();
   }
+  if (!is_read) expect_supported(file, required_by(json));
   if (!is_read) file.fail("", "this is not a glTF file that can be read: " + one_line(error));
   if (!model->asset.version.starts_with("2."))
     file.fail("asset", "this is glTF version " + one_line(model->asset.version) + ", expected 2");
 
-  for (const std::string& extension : model->extensionsRequired)
-    if (!is_supported(extension))
-      file.fail("extensionsRequired",
-                "the file requires the extension " + one_line(extension) + ", which is not supported");
+  expect_supported(file, model->extensionsRequired);
   for (const std::string& extension : model->extensionsUsed)
     if (!is_supported(extension))
       warn(warnings, file, "extensionsUsed",

@@ -1,6 +1,7 @@
 #include "boxwood/io/mtl.h"
 
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include <tiny_obj_loader.h>
@@ -76,23 +77,30 @@ void load_mtl(const std::filesystem::path& path, SceneDesc& desc, std::map<std::
     return;
   }
 
-  std::map<std::string, TextureId> textures;
+  std::map<std::pair<std::string, bool>, TextureId> textures;
+  const auto texture = [&](std::string name, bool is_color) {
+    for (char& c : name)
+      if (c == '\\') c = '/';
+    const auto [found, is_new] = textures.try_emplace({name, is_color});
+    if (is_new) {
+      try {
+        Texture picture = open_texture(path.parent_path() / name);
+        picture.is_srgb = picture.is_srgb && is_color;
+        found->second = desc.add(std::move(picture));
+      } catch (const FileError& error) {
+        desc.warnings.push_back(std::string("a texture is left out: ") + error.what());
+      }
+    }
+    return found->second;
+  };
   for (const tinyobj::material_t& source : materials) {
     Material material = to_material(source);
-    if (!source.diffuse_texname.empty()) {
-      std::string name = source.diffuse_texname;
-      for (char& c : name)
-        if (c == '\\') c = '/';
-      const auto [found, is_new] = textures.try_emplace(name);
-      if (is_new) {
-        try {
-          found->second = desc.add(open_texture(path.parent_path() / name));
-        } catch (const FileError& error) {
-          desc.warnings.push_back(std::string("a texture is left out: ") + error.what());
-        }
-      }
-      material.color_texture = found->second;
-    }
+    if (!source.diffuse_texname.empty()) material.color_texture = texture(source.diffuse_texname, true);
+    // Leaves and fences are cut out by the alpha of their own picture, or by a picture of greys.
+    if (!source.alpha_texname.empty())
+      material.opacity_texture = source.alpha_texname == source.diffuse_texname
+                                     ? NumberTexture{material.color_texture, NumberTexture::Channel::alpha}
+                                     : NumberTexture{texture(source.alpha_texname, false)};
     ids[source.name] = desc.add(std::move(material));
   }
 }

@@ -16,6 +16,7 @@
 #include "boxwood/io/mtl.h"
 #include "boxwood/io/polygon.h"
 #include "boxwood/io/text_scanner.h"
+#include "boxwood/io/vertex_colors.h"
 
 namespace boxwood::io {
 namespace {
@@ -38,6 +39,7 @@ class ObjReader {
       read_line();
     } while (scanner_.next_line());
     finish_geometry();
+    if (!colors_.empty()) show_vertex_colors(desc_);
     for (const auto& [keyword, place] : skipped_)
       desc_.warnings.push_back(path_string_ + ":line " + std::to_string(place.first_line) + ": " +
                                in_quotes(keyword) + " is not used (" + std::to_string(place.count) +
@@ -54,6 +56,7 @@ class ObjReader {
       if (!is_finite(positions_.back()))
         scanner_.fail("vertex " + std::to_string(positions_.size()) + " has a coordinate that is not finite");
       first_vertex_at_.push_back(kNone);
+      read_color();
     } else if (keyword == "vn") {
       normals_.push_back(read_vector("a normal"));
     } else if (keyword == "vt") {
@@ -88,6 +91,22 @@ class ObjReader {
   Vec3 read_vector(const char* what) {
     const float x = read_number(what), y = read_number(what), z = read_number(what);
     return {x, y, z};
+  }
+
+  // Behind a position a weight may stand, which says nothing here, or a color, or both. Other vertices of the
+  // file are white.
+  void read_color() {
+    std::array<float, 4> rest{};
+    std::size_t count = 0;
+    for (std::string_view word; count < 4 && !(word = scanner_.word_on_line()).empty(); ++count)
+      if (!parse_float(word, rest[count])) break;
+    if (count >= 3) {
+      const float* color = &rest[count - 3];
+      colors_.resize(positions_.size() - 1, {1, 1, 1, 1});
+      colors_.push_back(vertex_color_of_srgb(color[0], color[1], color[2]));
+    } else if (!colors_.empty()) {
+      colors_.push_back({1, 1, 1, 1});
+    }
   }
 
   // Counts from 1, or from -1 back from the newest.
@@ -156,6 +175,9 @@ class ObjReader {
     for (const Corner& corner : corners_) {
       if (has_normals) mesh_.normals.push_back(corner.normal != kNone ? normals_[corner.normal] : Vec3{});
       if (has_uvs) mesh_.uvs.push_back(corner.uv != kNone ? uvs_[corner.uv] : Vec2{});
+      if (!colors_.empty())
+        mesh_.colors.push_back(corner.position < colors_.size() ? colors_[corner.position]
+                                                                : std::array<float, 4>{1, 1, 1, 1});
       first_vertex_at_[corner.position] = kNone;
     }
 
@@ -221,6 +243,7 @@ class ObjReader {
   // The file's lists, which all its geometries share.
   std::vector<Vec3> positions_, normals_;
   std::vector<Vec2> uvs_;
+  std::vector<std::array<float, 4>> colors_;  // empty until a position has one
 
   // The geometry that is being read. For each of the file's positions the first vertex there, and from vertex
   // to vertex the next in the same place.

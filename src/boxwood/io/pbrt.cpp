@@ -37,9 +37,11 @@ class Interpreter {
     }
     state_.expect_all_closed();
     if (desc_.camera) {
-      desc_.camera->width = size_.width;
-      desc_.camera->height = size_.height;
+      desc_.camera->width = film_.width;
+      desc_.camera->height = film_.height;
     }
+    if (const float exposure = film_.speed * exposure_time_; film_.has_sensor && exposure > 0)
+      brighten(desc_, exposure);
     read_files(desc_, mesh_files_, textures_.pictures(), warnings_, executor_);
     return std::move(desc_);
   }
@@ -91,7 +93,8 @@ class Interpreter {
   Textures textures_;
   Materials materials_;
   State state_;
-  PictureSize size_;
+  Film film_;
+  float exposure_time_ = 1;
 
   std::map<std::string, Object, std::less<>> objects_;
   Object* open_object_ = nullptr;
@@ -170,7 +173,7 @@ void Interpreter::interpret(Directive& directive) {
   } else if (name == "Camera") {
     set_camera(directive);
   } else if (name == "Film") {
-    size_ = picture_size(directive);
+    film_ = make_film(directive);
   } else if (name == "MakeNamedMedium") {
     define_medium(directive);
   } else if (name == "MediumInterface") {
@@ -181,13 +184,17 @@ void Interpreter::interpret(Directive& directive) {
 
 void Interpreter::set_camera(const Directive& directive) {
   const Affine3& camera_from_world = state_.now.frame.world_from_object;
-  desc_.camera = make_camera(directive, camera_from_world, warnings_);
+  desc_.camera = make_camera(directive, camera_from_world, desc_.camera, warnings_);
+  exposure_time_ = exposure_time(directive);
   state_.name_coordinate_system("camera", inverse(camera_from_world));
 }
 
 void Interpreter::add_shape(const Directive& directive) {
   const Attributes& now = state_.now;
-  std::optional<ShapeValue> value = make_shape(directive, now.frame, parser_, warnings_);
+  const Material& material = materials_.values()[now.material].material;
+  ShapeFrame frame = now.frame;
+  frame.has_relief = material.normal_texture.is_valid() || material.bump_texture.texture.is_valid();
+  std::optional<ShapeValue> value = make_shape(directive, frame, parser_, warnings_);
   if (!value) return;
   const bool is_in_object = open_object_ != nullptr;
   if (is_in_object && now.glow)
@@ -197,7 +204,7 @@ void Interpreter::add_shape(const Directive& directive) {
   const std::optional<Glow>& glow = is_in_object ? no_glow : now.glow;
   const MaterialKey key{now.material, glow.value_or(Glow{}), read_coverage(directive, textures_),
                         now.inner_absorption, now.outer_absorption};
-  PlacedShape shape{std::move(*value), material_id(key), now.frame, directive.place};
+  PlacedShape shape{std::move(*value), material_id(key), frame, directive.place};
   directive.parameters.warn_unused(directive.subject(), warnings_);
   if (is_in_object)
     open_object_->shapes.push_back(std::move(shape));
@@ -209,9 +216,12 @@ void Interpreter::begin_object(const Directive& directive) {
   const std::string& name = directive.strings[0];
   if (open_object_ != nullptr)
     fail(directive.place, "ObjectBegin " + in_quotes(name) + " stands inside of another object");
-  const auto [entry, is_new] = objects_.try_emplace(name);
-  if (!is_new) fail(directive.place, "there is already an object of the name " + in_quotes(name));
-  open_object_ = &entry->second;
+  Object& object = objects_[name];
+  if (!object.shapes.empty())
+    warnings_.once(directive.place, "there is already an object of the name " + in_quotes(name) +
+                                        "; from here on the new one counts");
+  object = {};
+  open_object_ = &object;
   state_.begin(directive);
 }
 

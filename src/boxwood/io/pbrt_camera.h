@@ -9,16 +9,22 @@
 
 namespace boxwood::io::pbrt {
 
-/// The camera of a Camera directive under the transform `camera_from_world`; none, with a warning, for kinds
-/// that are not supported. Throws FileError for values that make no camera.
-std::optional<Camera> make_camera(const Directive& directive, const Affine3& camera_from_world,
-                                  Warnings& warnings);
+/// The camera of a Camera directive under the transform `camera_from_world`. For kinds that are not supported
+/// a plain one in their place, with the angle of the camera before it and a warning. Throws FileError for
+/// values that make no camera.
+Camera make_camera(const Directive& directive, const Affine3& camera_from_world,
+                   const std::optional<Camera>& before, Warnings& warnings);
 
-struct PictureSize {
+/// How long a Camera directive's shutter is open.
+float exposure_time(const Directive& directive);
+
+struct Film {
   int width = 0, height = 0;
+  bool has_sensor = false;  ///< As version 4 has it: light counts for more the longer the shutter is open,
+  float speed = 1;          ///< and by this.
 };
 
-/// The size that a Film directive asks for.
-PictureSize picture_size(const Directive& directive);
+/// What a Film directive asks for.
+Film make_film(const Directive& directive);
 
 }  // namespace boxwood::io::pbrt

@@ -17,6 +17,7 @@ void read_mesh(const MeshFile& file, SceneDesc& desc) {
   TriangleMesh mesh;
   try {
     mesh = read_ply_mesh(file.path);
+    mesh.colors.clear();  // pbrt does not look at them
     bake(mesh, file.frame);
   } catch (const std::exception& error) {
     fail(file.place, std::string("the mesh cannot be used: ") + error.what());

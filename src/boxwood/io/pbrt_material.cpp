@@ -22,15 +22,17 @@ MaterialValue of_kind(Kind kind, const TextureValue& color) {
 /// What a boundary of the highest index that the renderer takes reflects head-on.
 constexpr float kHighestHeadOn = 0.66f;
 
-/// Gloss of which a boundary reflects only a share, by color; none makes the surface matte.
-void set_gloss(Material& plastic, Vec3 share) {
-  const float most = std::min(max_component(share), 1.0f);
+/// Gloss of which a boundary reflects only a share, by color or by the mean color of a picture; none makes
+/// the surface matte.
+void set_gloss(Material& plastic, const TextureValue& share) {
+  const float most = std::min(max_component(share.color), 1.0f);
   if (!(most > 0)) {
     plastic.kind = Kind::matte;
-  } else if (min_component(share) < 1) {
+  } else if (min_component(share.color) < 1 || !share.is_plain()) {
     plastic.kind = Kind::layered;
     plastic.specular = most;
-    plastic.specular_color = share / max_component(share);
+    plastic.specular_color = share.color / max_component(share.color);
+    plastic.specular_texture = {share.texture, NumberTexture::Channel::mean};
   }
 }
 
@@ -58,7 +60,7 @@ Materials::Materials(Textures& textures, const Parser& parser, Warnings& warning
 
 int Materials::add(const Directive& directive) {
   MaterialValue value = evaluate(directive.strings[0], directive);
-  set_normal_map(value.material, directive);
+  set_relief(value.material, directive);
   values_.push_back(std::move(value));
   directive.parameters.warn_unused(directive.subject(), warnings_);
   return static_cast<int>(values_.size() - 1);
@@ -69,14 +71,21 @@ void Materials::define(const Directive& directive) {
   const std::string kind = directive.parameters.string("type", "");
   if (kind.empty()) fail(directive.place, "MakeNamedMaterial " + in_quotes(name) + " has no \"string type\"");
   MaterialValue value = evaluate(kind, directive);
-  set_normal_map(value.material, directive);
+  set_relief(value.material, directive);
   directive.parameters.warn_unused("Material " + in_quotes(kind), warnings_);
   value.material.name = name;
   named_[name] = static_cast<int>(values_.size());
   values_.push_back(std::move(value));
 }
 
-void Materials::set_normal_map(Material& material, const Directive& directive) {
+void Materials::set_relief(Material& material, const Directive& directive) {
+  // Version 3 says bumpmap, version 4 displacement; both bend normals only.
+  for (const char* name : {"bumpmap", "displacement"}) {
+    const NumberValue height = textures_.number_or_texture(directive.parameters, name, 0);
+    if (!height.texture.texture.is_valid()) continue;
+    material.bump = height.number;
+    material.bump_texture = height.texture;
+  }
   if (const std::string file = directive.parameters.string("normalmap", ""); !file.empty())
     material.normal_texture = material.coat_normal_texture = textures_.normal_map(file, directive.place);
 }
@@ -199,13 +208,16 @@ MaterialValue Materials::evaluate(const std::string& kind, const Directive& dire
     return of_kind(Kind::matte, color(kind == "matte" ? "Kd" : "reflectance", 0.5f));
   if (kind == "plastic") {
     MaterialValue value = plastic("Kd", 0.25f, 0.1f, true);
-    set_gloss(value.material, textures_.plain_color(parameters, "Ks", splat(0.25f)));
+    set_gloss(value.material, color("Ks", 0.25f));
     return value;
   }
   if (kind == "substrate") {
     // The color of the gloss is what it reflects head-on, and there is one index that reflects so much.
     MaterialValue value = plastic("Kd", 0.5f, 0.1f, true);
-    const Vec3 gloss = textures_.plain_color(parameters, "Ks", splat(0.5f));
+    const TextureValue given = color("Ks", 0.5f);
+    const Vec3 gloss = given.is_plain() ? given.color : splat(0.04f);
+    if (!given.is_plain())
+      warn("a picture for the gloss (\"Ks\") of \"substrate\" is not supported; that of glass stands in");
     if (min_component(gloss) < max_component(gloss))
       warn("gloss (\"Ks\") of another color than grey is not supported in \"substrate\"; its mean stands in");
     const float root = std::sqrt(std::clamp((gloss.x + gloss.y + gloss.z) / 3, 0.0f, kHighestHeadOn));
@@ -289,7 +301,7 @@ MaterialValue Materials::uber(const Directive& directive, float ior) const {
   const ParameterList& parameters = directive.parameters;
   const TextureValue opacity = textures_.color(parameters, "opacity", {});
   const Vec3 through = textures_.plain_color(parameters, "Kt", {0, 0, 0});
-  const Vec3 gloss = textures_.plain_color(parameters, "Ks", splat(0.25f));
+  const TextureValue gloss = textures_.color(parameters, "Ks", {splat(0.25f), {}});
   const bool is_shiny = max_component(textures_.plain_color(parameters, "Kr", {0, 0, 0})) > 0;
   MaterialValue value =
       of_kind(Kind::plastic, textures_.color(parameters, "Kd", {{0.25f, 0.25f, 0.25f}, {}}));
@@ -297,7 +309,7 @@ MaterialValue Materials::uber(const Directive& directive, float ior) const {
   m.ior = ior;
   set_roughness(m, parameters, 0.1f, true);
   if (is_shiny) m.roughness = 0;
-  set_gloss(m, is_shiny ? splat(1) : gloss);
+  set_gloss(m, is_shiny ? TextureValue{} : gloss);
   if (const float kt = max_component(through); kt > 0) {
     // What gets through, beside what is scattered.
     m.kind = Kind::layered;

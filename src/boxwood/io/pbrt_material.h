@@ -37,7 +37,8 @@ class Materials {
   MaterialValue mix(const Directive& directive) const;
   MaterialValue uber(const Directive& directive, float ior) const;
   MaterialValue disney(const Directive& directive, float ior) const;
-  void set_normal_map(Material& material, const Directive& directive);
+  /// Bumps and a normal map.
+  void set_relief(Material& material, const Directive& directive);
   void set_metal(Material& material, const ParameterList& parameters, const std::string& prefix) const;
   Vec3 metal_color(const ParameterList& parameters, const std::string& prefix) const;
 

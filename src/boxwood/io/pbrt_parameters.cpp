@@ -69,6 +69,8 @@ void Warnings::once(const Place& place, const std::string& message) {
 double number_of(const Tokenizer& tokenizer, const Token& token) {
   std::string_view text = token.text;
   if (token.kind == Token::Kind::word) {
+    // Scripts write lists with commas, which pbrt reads over.
+    if (text.size() > 1 && text.back() == ',') text.remove_suffix(1);
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -144,12 +146,14 @@ void ParameterList::add_defaults(const ParameterList& defaults) {
 }
 
 const Parameter* ParameterList::find(std::string_view name) const {
-  for (const Parameter& parameter : parameters_)
-    if (parameter.name == name) {
-      parameter.is_used = true;
-      return &parameter;
-    }
-  return nullptr;
+  const Parameter* found = nullptr;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Parameter& parameter = parameters_[i];
+    if (parameter.name != name) continue;
+    parameter.is_used = true;
+    if (found == nullptr || i < given_) found = &parameter;
+  }
+  return found;
 }
 
 const Parameter* ParameterList::find_numbers(std::string_view name, std::size_t multiple_of,

@@ -44,11 +44,15 @@ double number_of(const Tokenizer& tokenizer, const Token& token);
 
 class ParameterList {
  public:
-  void add(Parameter parameter) { parameters_.push_back(std::move(parameter)); }
+  /// Precondition: no defaults were added yet.
+  void add(Parameter parameter) {
+    parameters_.push_back(std::move(parameter));
+    ++given_;
+  }
   /// Adds defaults: they answer only for names that are not there yet.
   void add_defaults(const ParameterList& defaults);
 
-  /// The first parameter of this name, marked as used; null when there is none.
+  /// The parameter of this name, the last where it is given twice, marked as used; null when there is none.
   const Parameter* find(std::string_view name) const;
 
   // Each throws FileError when the parameter is there with another type or another count.
@@ -73,6 +77,7 @@ class ParameterList {
   const Parameter* find_numbers(std::string_view name, std::size_t multiple_of, bool is_single) const;
 
   std::vector<Parameter> parameters_;
+  std::size_t given_ = 0;  // before the defaults
 };
 
 }  // namespace boxwood::io::pbrt

@@ -113,6 +113,9 @@ void Parser::include(const Directive& directive) {
     fail(directive.place, "more than " + std::to_string(kMostNested) + " files are nested by Include");
   if (++included_ > kMostIncludes)
     fail(directive.place, "more than " + std::to_string(kMostIncludes) + " files are included");
+  // Exporters leave a file for what the user may add.
+  if (std::filesystem::is_regular_file(path, ignored) && std::filesystem::file_size(path, ignored) == 0)
+    return;
   try {
     open(path);
   } catch (const FileError& error) {

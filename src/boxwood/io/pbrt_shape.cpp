@@ -115,7 +115,7 @@ std::optional<ShapeValue> sphere(const Directive& directive, const ShapeFrame& f
               high = std::clamp(parameters.number("zmax", radius), -radius, radius);
   const bool is_whole = low <= -radius * 0.9999f && high >= radius * 0.9999f && turn > 359.96f * kDegree;
   // A sphere of ours shines outwards and knows no other way round.
-  if (is_whole && !frame.is_reversed) {
+  if (is_whole && !frame.is_reversed && !frame.has_relief) {
     const Affine3& m = frame.world_from_object;
     return round_shape(Sphere{{0, 0, 0}, radius}, m, [&](float scale) {
       return Sphere{m.origin, radius * scale};
@@ -139,7 +139,7 @@ std::optional<ShapeValue> disk(const Directive& directive, const ShapeFrame& fra
   if (!(inner >= 0 && inner < radius))
     fail(directive.place, "the disk's inner radius is " + std::to_string(inner) +
                               ", expected at least 0 and less than the radius");
-  if (inner == 0 && turn > 359.96f * kDegree) {
+  if (inner == 0 && turn > 359.96f * kDegree && !frame.has_relief) {
     const Disk plain{{0, 0, height}, {0, 0, frame.is_reversed ? -1.0f : 1.0f}, radius};
     const Affine3& m = frame.world_from_object;
     return round_shape(plain, m, [&](float scale) {
@@ -216,6 +216,14 @@ std::optional<ShapeValue> make_shape(const Directive& directive, const ShapeFram
   if (!(std::fabs(size) > 0) || !std::isfinite(size))
     fail(directive.place,
          directive.subject() + " stands under a transform that flattens space or is not finite");
+
+  // Exporters write objects that have no faces.
+  const bool is_mesh = kind == "trianglemesh" || kind == "bilinearmesh" || kind == "loopsubdiv";
+  if (const Parameter* positions = parameters.find("P");
+      is_mesh && positions != nullptr && positions->numbers.empty()) {
+    warnings.once(directive.place, "a mesh without vertices (\"point3 P\") is left out");
+    return std::nullopt;
+  }
 
   ShapeValue value;
   const auto take_mesh = [&](TriangleMesh mesh) {

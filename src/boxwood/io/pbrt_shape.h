@@ -23,6 +23,8 @@ struct ShapeValue {
 struct ShapeFrame {
   Affine3 world_from_object;
   bool is_reversed = false;  ///< ReverseOrientation.
+  /// Its material bends normals along texture coordinates, which takes a mesh.
+  bool has_relief = false;
 };
 
 /// The shape of a Shape directive; none, with a warning, for kinds that are not supported. Throws FileError

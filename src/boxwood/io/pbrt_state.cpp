@@ -5,14 +5,16 @@
 namespace boxwood::io::pbrt {
 namespace {
 
-/// Sixteen numbers, column by column; the last row must leave straight lines parallel.
-Affine3 matrix(const Directive& directive) {
+/// Sixteen numbers, column by column; the last row should leave straight lines parallel.
+Affine3 matrix(const Directive& directive, Warnings& warnings) {
   const std::vector<double>& n = directive.numbers;
   const double off = std::fabs(n[3]) + std::fabs(n[7]) + std::fabs(n[11]);
-  if (n[15] == 0 || off > 1e-6 * std::fabs(n[15]))
-    fail(directive.place, directive.name + " is not affine: its last row is " + std::to_string(n[3]) + " " +
-                              std::to_string(n[7]) + " " + std::to_string(n[11]) + " " +
-                              std::to_string(n[15]) + ", expected 0 0 0 1");
+  const std::string last_row = directive.name + " is not affine: its last row is " + std::to_string(n[3]) +
+                               " " + std::to_string(n[7]) + " " + std::to_string(n[11]) + " " +
+                               std::to_string(n[15]) + ", expected 0 0 0 1";
+  if (n[15] == 0) fail(directive.place, last_row);
+  // Matrices with rows and columns confused are about, on lights whose place does not matter.
+  if (off > 1e-6 * std::fabs(n[15])) warnings.once(directive.place, last_row + "; the row is left out");
   const auto column = [&](int k) {
     return Vec3{float(n[k] / n[15]), float(n[k + 1] / n[15]), float(n[k + 2] / n[15])};
   };
@@ -81,9 +83,9 @@ bool State::transform(const Directive& directive, Warnings& warnings) {
   } else if (name == "LookAt") {
     m = m * look_at(directive);
   } else if (name == "Transform") {
-    m = matrix(directive);
+    m = matrix(directive, warnings);
   } else if (name == "ConcatTransform") {
-    m = m * matrix(directive);
+    m = m * matrix(directive, warnings);
   } else if (name == "CoordinateSystem") {
     name_coordinate_system(directive.strings[0], m);
   } else if (name == "CoordSysTransform") {

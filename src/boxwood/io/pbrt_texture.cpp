@@ -36,7 +36,9 @@ TextureValue Textures::evaluate(const Directive& directive) {
   if (kind == "mix") return mix(directive);
   if (kind == "checkerboard" && parameters.integer("dimension", 2) == 2) return checkerboard(directive);
   if (kind == "checkerboard" || kind == "dots") {
-    const TextureValue mean = mean_of_two(directive, 0.5f);
+    const bool is_dots = kind == "dots";
+    const TextureValue mean =
+        mean_of_two(directive, is_dots ? "outside" : "tex1", is_dots ? "inside" : "tex2");
     parameters.ignore({"dimension", "mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2", "aamode"});
     warnings_.once(directive.place, "the pattern of a " + in_quotes(kind) +
                                         " texture is not supported; its mean color stands in");
@@ -130,10 +132,10 @@ TextureValue Textures::checkerboard(const Directive& directive) {
   return {{1, 1, 1}, desc_.add(std::move(texture))};
 }
 
-TextureValue Textures::mean_of_two(const Directive& directive, float second_share) const {
-  const TextureValue a = color(directive.parameters, "tex1", {{0, 0, 0}, {}}),
-                     b = color(directive.parameters, "tex2", {});
-  if (a.is_plain() && b.is_plain()) return {a.color * (1 - second_share) + b.color * second_share, {}};
+TextureValue Textures::mean_of_two(const Directive& directive, const char* first, const char* second) const {
+  const TextureValue a = color(directive.parameters, first, {{0, 0, 0}, {}}),
+                     b = color(directive.parameters, second, {});
+  if (a.is_plain() && b.is_plain()) return {(a.color + b.color) * 0.5f, {}};
   return a.is_plain() ? b : a;
 }
 

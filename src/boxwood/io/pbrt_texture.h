@@ -61,7 +61,7 @@ class Textures {
   TextureValue image_map(const Directive& directive);
   TextureValue mix(const Directive& directive);
   TextureValue checkerboard(const Directive& directive);
-  TextureValue mean_of_two(const Directive& directive, float second_share) const;
+  TextureValue mean_of_two(const Directive& directive, const char* first, const char* second) const;
   void place(const Directive& directive, Texture& texture) const;
   TextureValue evaluate(const Directive& directive);
   const TextureValue* find(const Parameter& parameter, bool of_numbers) const;

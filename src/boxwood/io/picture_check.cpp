@@ -10,10 +10,10 @@ namespace boxwood::io {
 namespace {
 
 // Larger pictures are taken for damage, and so are those that tell of more numbers than any encoding packs
-// into the bytes of their file. (A bitmap of one value takes a PNG one byte for 8256 pixels, a flat picture
-// an EXR about as little.)
+// into the bytes of their file. (A bitmap of one value takes a PNG one byte for 8256 pixels, each of which
+// becomes four numbers where there is a palette; a flat picture takes an EXR about as little.)
 constexpr std::int64_t kMostPixelsAcross = 1 << 16, kMostChannels = 256;
-constexpr std::uint64_t kMostValues = 1u << 29, kMostValuesPerByte = 1u << 14;
+constexpr std::uint64_t kMostValues = 1u << 29, kMostValuesPerByte = 1u << 16;
 
 [[noreturn]] void fail(const std::string& name, std::size_t at, const std::string& message) {
   throw FileError(name, "byte " + std::to_string(at), message);

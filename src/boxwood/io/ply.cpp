@@ -2,8 +2,8 @@
 //
 // Greg Turk's polygon format (Stanford, 1994): a text header lists elements, each with a count and typed
 // properties; their values follow as text or as bytes of either order. Everything that is not a vertex's
-// position, normal or texture coordinate, nor the corners of a face or a triangle strip, is read over. A
-// count is believed only as far as the file has bytes for it, so that no header can ask for memory that the
+// position, normal, color or texture coordinate, nor the corners of a face or a triangle strip, is read over.
+// A count is believed only as far as the file has bytes for it, so that no header can ask for memory that the
 // file does not pay for.
 
 #include <algorithm>
@@ -19,6 +19,7 @@
 #include "boxwood/io/ply_header.h"
 #include "boxwood/io/polygon.h"
 #include "boxwood/io/text_scanner.h"
+#include "boxwood/io/vertex_colors.h"
 
 namespace boxwood::io {
 namespace {
@@ -162,8 +163,8 @@ class MeshReader {
     if (element.count >= std::numeric_limits<std::uint32_t>::max())
       body_.fail("there are " + std::to_string(element.count) + " vertices, expected fewer than 2^32 - 1");
 
-    // Say for each property which of our eight numbers it is, or that it is none.
-    enum { x, y, z, nx, ny, nz, u, v, kSlots };
+    // Say for each property which of our numbers it is, or that it is none.
+    enum { x, y, z, nx, ny, nz, u, v, red, green, blue, kSlots };
     constexpr int kNowhere = kSlots;
     std::vector<int> slots(element.properties.size(), kNowhere);
     const auto place = [&](int slot, std::initializer_list<const char*> names) {
@@ -176,11 +177,20 @@ class MeshReader {
     const bool has_nx = place(nx, {"nx"}), has_ny = place(ny, {"ny"}), has_nz = place(nz, {"nz"});
     const bool has_u = place(u, {"u", "s", "texture_u", "texture_s"}),
                has_v = place(v, {"v", "t", "texture_v", "texture_t"});
+    const bool has_red = place(red, {"red", "r", "diffuse_red"}),
+               has_green = place(green, {"green", "g", "diffuse_green"}),
+               has_blue = place(blue, {"blue", "b", "diffuse_blue"});
+    const bool has_colors = has_red && has_green && has_blue;
+    std::array<float, kSlots + 1> units;
+    units.fill(1);
+    for (std::size_t p = 0; p < slots.size(); ++p)
+      if (slots[p] >= red && slots[p] <= blue) units[slots[p]] = color_unit(element.properties[p].type);
     const bool has_normals = has_nx && has_ny && has_nz, has_uvs = has_u && has_v;
 
     mesh_.positions.reserve(element.count);
     if (has_normals) mesh_.normals.reserve(element.count);
     if (has_uvs) mesh_.uvs.reserve(element.count);
+    if (has_colors) mesh_.colors.reserve(element.count);
     std::array<float, kSlots + 1> values{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (std::size_t p = 0; p < slots.size(); ++p) {
@@ -193,7 +203,16 @@ class MeshReader {
       mesh_.positions.push_back({values[x], values[y], values[z]});
       if (has_normals) mesh_.normals.push_back({values[nx], values[ny], values[nz]});
       if (has_uvs) mesh_.uvs.push_back({values[u], values[v]});
+      if (has_colors)
+        mesh_.colors.push_back(vertex_color_of_srgb(values[red] / units[red], values[green] / units[green],
+                                                    values[blue] / units[blue]));
     }
+  }
+
+  /// The number that stands for full light.
+  static float color_unit(Type type) {
+    if (type == Type::float32 || type == Type::float64) return 1;
+    return ply::size_of(type) == 1 ? 255 : 65535;
   }
 
   // A double that no float can hold becomes infinite, which load() reports with the vertex.
@@ -301,6 +320,7 @@ TriangleMesh read_ply_mesh(const std::filesystem::path& path) {
 SceneDesc load_ply(const std::filesystem::path& path, Executor&) {
   SceneDesc desc;
   desc.add(read_ply_mesh(path));
+  if (!std::get<TriangleMesh>(desc.geometries[0].shapes).colors.empty()) show_vertex_colors(desc);
   return desc;
 }
 

@@ -21,6 +21,9 @@ float schlick(float cosine) {
   return x2 * x2 * x;
 }
 
+/// Indices of refraction that are so little apart are the same.
+constexpr float kAlike = 1e-5f;
+
 }  // namespace
 
 Bsdf::Bsdf(const Look& look, const Surface& surface, Vec3 normal, Vec3 outgoing, Vec3 coat_normal)
@@ -143,9 +146,11 @@ bool Bsdf::is_perfect(Lobe lobe) const {
   switch (lobe) {
     case coat:
       return look_.coat_alpha == 0;
+    case glass:
+      // Facets between what is alike on both sides bend nothing, and no facet is behind a direction.
+      return alpha_ == 0 || (look_.ior < 1 + kAlike && !look_.is_thin);
     case metal:
     case specular:
-    case glass:
       return alpha_ == 0;
     default:
       return false;

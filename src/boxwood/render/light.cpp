@@ -37,7 +37,7 @@ bool has_light(const SceneDesc& desc) {
   if (desc.sky || !desc.point_lights.empty() || !desc.spot_lights.empty() || !desc.distant_lights.empty() ||
       !desc.environments.empty())
     return true;
-  return std::any_of(desc.materials.begin(), desc.materials.end(), is_emissive);
+  return desc.is_lit_by_glow && std::any_of(desc.materials.begin(), desc.materials.end(), is_emissive);
 }
 
 Lights::Lights(const Scene& scene, const Camera& camera) : scene_(scene) {

@@ -14,27 +14,6 @@ Vec3 clamp01(Vec3 color) {
   return min(max(color, {0, 0, 0}), {1, 1, 1});
 }
 
-/// Numbers are looked up at the point, however wide a square is looked at.
-float number_at(const SceneDesc& desc, const NumberTexture& number, const TexturePoint& point) {
-  if (!number.texture.is_valid()) return 1;
-  TexturePoint sharp = point;
-  sharp.width = sharp.second_width = 0;
-  const Texel texel = texture_at(desc, number.texture, sharp);
-  switch (number.channel) {
-    case NumberTexture::Channel::red:
-      return texel.color.x;
-    case NumberTexture::Channel::green:
-      return texel.color.y;
-    case NumberTexture::Channel::blue:
-      return texel.color.z;
-    case NumberTexture::Channel::alpha:
-      return texel.alpha;
-    case NumberTexture::Channel::mean:
-      break;
-  }
-  return (texel.color.x + texel.color.y + texel.color.z) / 3;
-}
-
 Vec3 color_at(const SceneDesc& desc, Vec3 color, TextureId texture, const TexturePoint& point) {
   return texture.is_valid() ? color * texture_at(desc, texture, point).color : color;
 }
@@ -94,6 +73,7 @@ PreparedMaterial::PreparedMaterial(const Material& material)
       is_see_through(render::is_see_through(material)),
       has_color_texture(material.color_texture.is_valid()),
       has_normal_texture(material.normal_texture.is_valid()),
+      has_bumps(material.bump != 0 && material.bump_texture.texture.is_valid()),
       has_coat(material.kind == Kind::layered && material.coat > 0),
       is_plain(false),
       color(clamp01(material.color)),

@@ -37,7 +37,7 @@ inline bool is_see_through(const Material& material) {
 struct PreparedMaterial {
   explicit PreparedMaterial(const Material& material);
 
-  bool is_emissive, is_mix, is_see_through, has_color_texture, has_normal_texture, has_coat;
+  bool is_emissive, is_mix, is_see_through, has_color_texture, has_normal_texture, has_bumps, has_coat;
   /// Plain: a matte base, bare or under a clear boundary whose roughness is the same everywhere and above 0.
   /// What most surfaces are (plain_block.h).
   bool is_plain;

@@ -306,10 +306,15 @@ class PathTracer final : public Integrator {
       point.width = path.cone_width * step.surfaces.uv_density[i];
       point.second_width = path.cone_width * step.surfaces.second_uv_density[i];
     }
+    const auto bumped = [&](Vec3 normal) {
+      return prepared->has_bumps
+                 ? bumped_normal(scene_, hit, step.surfaces[i], normal, material.bump, material.bump_texture)
+                 : normal;
+    };
     const Vec3 normal =
-        prepared->has_normal_texture
-            ? mapped_normal(scene_, hit, step.surfaces[i], material.normal_texture, material.normal_scale)
-            : step.surfaces.shading_normal[i];
+        bumped(prepared->has_normal_texture ? mapped_normal(scene_, hit, step.surfaces[i],
+                                                            material.normal_texture, material.normal_scale)
+                                            : step.surfaces.shading_normal[i]);
     const Vec3 outgoing = -ray.direction;
     const Vec3 color = !prepared->is_plain           ? Vec3{0, 0, 0}
                        : prepared->has_color_texture ? base_color(desc, material, point)
@@ -323,10 +328,10 @@ class PathTracer final : public Integrator {
       return Kind::plain;
     }
     step.looks[i] = look_at(desc, material, *prepared, point);
-    const Vec3 coat_normal = prepared->has_coat
-                                 ? mapped_normal(scene_, hit, step.surfaces[i], material.coat_normal_texture,
-                                                 material.coat_normal_scale)
-                                 : normal;
+    const Vec3 coat_normal =
+        prepared->has_coat ? bumped(mapped_normal(scene_, hit, step.surfaces[i], material.coat_normal_texture,
+                                                  material.coat_normal_scale))
+                           : normal;
     const Bsdf& bsdf = step.bsdfs[i].emplace(step.looks[i], step.surfaces[i], normal, outgoing, coat_normal);
     step.receivers.normal.set(i, bsdf.spreads_behind() ? Vec3{0, 0, 0} : bsdf.facing_normal());
     step.paths.is_spread[i] = bsdf.has_spread();

@@ -162,4 +162,24 @@ Texel texture_at(const SceneDesc& desc, TextureId id, const TexturePoint& point)
   return {{1, 1, 1}, 1};
 }
 
+float number_at(const SceneDesc& desc, const NumberTexture& number, const TexturePoint& point) {
+  if (!number.texture.is_valid()) return 1;
+  TexturePoint sharp = point;
+  sharp.width = sharp.second_width = 0;
+  const Texel texel = texture_at(desc, number.texture, sharp);
+  switch (number.channel) {
+    case NumberTexture::Channel::red:
+      return texel.color.x;
+    case NumberTexture::Channel::green:
+      return texel.color.y;
+    case NumberTexture::Channel::blue:
+      return texel.color.z;
+    case NumberTexture::Channel::alpha:
+      return texel.alpha;
+    case NumberTexture::Channel::mean:
+      break;
+  }
+  return (texel.color.x + texel.color.y + texel.color.z) / 3;
+}
+
 }  // namespace boxwood::render

@@ -33,4 +33,7 @@ struct Texel {
 /// no texels.
 Texel texture_at(const SceneDesc& desc, TextureId id, const TexturePoint& point);
 
+/// A number there, at the point itself however wide a square is looked at. 1 where there is no texture.
+float number_at(const SceneDesc& desc, const NumberTexture& number, const TexturePoint& point);
+
 }  // namespace boxwood::render

@@ -59,4 +59,27 @@ Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, T
   return is_finite(mapped) && dot(mapped, surface.normal) > 0 ? mapped : n;
 }
 
+Vec3 bumped_normal(const Scene& scene, const Hit& hit, const Surface& surface, Vec3 normal, float height,
+                   const NumberTexture& texture) {
+  const std::optional<UvFrame> frame = uv_frame(scene, hit, Texture{});
+  if (!frame) return normal;
+
+  // How fast the height grows with u and v, between two points a texel or so apart.
+  constexpr float kStep = 0x1p-11f;
+  const auto height_at = [&](float u, float v) {
+    const auto moved = [&](Vec2 uv) { return Vec2{uv.x + u, uv.y + v}; };
+    return height *
+           number_at(scene.description(), texture, TexturePoint(moved(surface.uv), moved(surface.second_uv)));
+  };
+  const float along_u = (height_at(kStep, 0) - height_at(-kStep, 0)) / (2 * kStep),
+              along_v = (height_at(0, kStep) - height_at(0, -kStep)) / (2 * kStep);
+
+  // The gradient on the surface (Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", 2010, eq. 2).
+  const Vec3 n = normal;
+  const Vec3 gradient = (cross(frame->along_v, n) * along_u + cross(n, frame->along_u) * along_v) /
+                        dot(n, cross(frame->along_u, frame->along_v));
+  const Vec3 bumped = normalize(n - gradient);
+  return is_finite(bumped) && dot(bumped, surface.normal) > 0 ? bumped : n;
+}
+
 }  // namespace boxwood::render

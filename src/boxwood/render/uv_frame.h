@@ -20,4 +20,8 @@ std::optional<UvFrame> uv_frame(const Scene& scene, const Hit& hit, const Textur
 /// is no map.
 Vec3 mapped_normal(const Scene& scene, const Hit& hit, const Surface& surface, TextureId map, float scale);
 
+/// `normal` as bumps bend it that are `height` times the texture high, in units of the world.
+Vec3 bumped_normal(const Scene& scene, const Hit& hit, const Surface& surface, Vec3 normal, float height,
+                   const NumberTexture& texture);
+
 }  // namespace boxwood::render

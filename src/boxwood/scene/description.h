@@ -162,6 +162,9 @@ struct Material {
   float alpha_cutoff = -1;   ///< From 0 on: opacity is 1 where it reaches this, else 0.
   TextureId normal_texture;  ///< Normals, by the tangents of the texture coordinates.
   float normal_scale = 1;
+  /// Bumps: normals are bent, the coat's too, as if meshes were so much higher, in units of the world.
+  float bump = 0;
+  NumberTexture bump_texture;  ///< None: no bumps.
 
   // Layered.
   float metalness = 0, transmission = 0;
@@ -243,6 +246,8 @@ struct SceneDesc {
   std::vector<Environment> environments;
   std::optional<Camera> camera;  ///< None: the renderer frames the bounds.
   std::optional<Sky> sky;        ///< None: black, or the renderer's plain sky when there is no light at all.
+  /// False: what glows is a detail of a model, such as a screen, and no reason to leave out the plain sky.
+  bool is_lit_by_glow = true;
   std::string name;
   std::vector<std::string> warnings;  ///< What a loader could not use and went on without; one line each.
 
@@ -263,7 +268,7 @@ void for_each_texture(AnyMaterial& m, const Visit& visit) {
   for (auto* id : {&m.color_texture, &m.emission_texture, &m.transmission_color_texture, &m.normal_texture,
                    &m.specular_color_texture, &m.sheen_color_texture, &m.coat_normal_texture})
     visit(*id);
-  for (auto* number : {&m.roughness_texture, &m.opacity_texture, &m.metalness_texture,
+  for (auto* number : {&m.roughness_texture, &m.opacity_texture, &m.bump_texture, &m.metalness_texture,
                        &m.transmission_texture, &m.specular_texture, &m.coat_texture,
                        &m.coat_roughness_texture, &m.sheen_roughness_texture, &m.mix_texture})
     visit(number->texture);

@@ -154,16 +154,17 @@ void add(Stirrer& stirrer, const Material& material) {
   const auto& [name, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides,
                emission_texture, roughness_texture, roughness_scale, metal_eta, metal_k, reflection_color,
                transmission_color, transmission_color_texture, is_thin, absorption, outer_absorption, opacity,
-               opacity_texture, alpha_cutoff, normal_texture, normal_scale, metalness, transmission,
-               metalness_texture, transmission_texture, specular, specular_color, specular_texture,
-               specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture,
-               coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness, sheen_color_texture,
-               sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture] = material;
+               opacity_texture, alpha_cutoff, normal_texture, normal_scale, bump, bump_texture, metalness,
+               transmission, metalness_texture, transmission_texture, specular, specular_color,
+               specular_texture, specular_color_texture, coat, coat_roughness, coat_texture,
+               coat_roughness_texture, coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness,
+               sheen_color_texture, sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture] =
+      material;
   add_all(stirrer, kind, color, color_texture, roughness, ior, emission, emits_from_both_sides,
           emission_texture, roughness_texture, roughness_scale, metal_eta, metal_k, reflection_color,
           transmission_color, transmission_color_texture, is_thin, absorption, outer_absorption, opacity,
-          opacity_texture, alpha_cutoff, normal_texture, normal_scale, metalness, transmission,
-          metalness_texture, transmission_texture, specular, specular_color, specular_texture,
+          opacity_texture, alpha_cutoff, normal_texture, normal_scale, bump, bump_texture, metalness,
+          transmission, metalness_texture, transmission_texture, specular, specular_color, specular_texture,
           specular_color_texture, coat, coat_roughness, coat_texture, coat_roughness_texture,
           coat_normal_texture, coat_normal_scale, sheen_color, sheen_roughness, sheen_color_texture,
           sheen_roughness_texture, mix_first, mix_second, mix_amount, mix_texture);
@@ -210,9 +211,9 @@ void add(Stirrer& stirrer, const DistantLight& light) {
 std::uint64_t fingerprint(const SceneDesc& desc) {
   Stirrer stirrer;
   const auto& [geometries, instances, materials, textures, point_lights, spot_lights, distant_lights,
-               environments, camera, sky, name, warnings] = desc;
+               environments, camera, sky, is_lit_by_glow, name, warnings] = desc;
   add_all(stirrer, geometries, instances, materials, textures, point_lights, spot_lights, distant_lights,
-          environments, camera, sky);
+          environments, camera, sky, is_lit_by_glow);
   return stirrer.value();
 }
 
