@@ -160,6 +160,7 @@ class RayMeshIntersector:
                 f"ray_origins and ray_directions: got shapes {origins.shape} and {directions.shape}, expected (m, 3) for both"
             )
         with np.errstate(divide="ignore", invalid="ignore"):  # without a direction there is no ray, and it misses
+            directions = directions / np.abs(directions).max(axis=1, keepdims=True)  # the squares of 1e300 are too large
             return origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
     def _scene(self, origins: _Array) -> "tuple[Scene, _Array]":
@@ -172,8 +173,9 @@ class RayMeshIntersector:
         if self._built is None or self._built[0] != key:
             vertices = np.asarray(self.mesh.vertices, np.float64)
             center, size = np.zeros(3), 1.0
-            if len(vertices):
-                lower, upper = vertices.min(axis=0), vertices.max(axis=0)
+            finite = vertices[np.isfinite(vertices).all(axis=1)] if len(vertices) else vertices
+            if len(finite):
+                lower, upper = finite.min(axis=0), finite.max(axis=0)
                 center = (lower + upper) / 2
                 size = float(np.max(upper - lower)) or 1.0
             scale = float(2.0 ** -np.floor(np.log2(size)))  # a power of two moves no digit

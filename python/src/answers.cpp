@@ -13,6 +13,7 @@
 
 #include "docstrings.h"
 #include "past_cache.h"
+#include "pickles.h"
 #include "running.h"
 
 namespace boxwood::python {
@@ -83,6 +84,13 @@ Block allocate_block(std::size_t size) {
   });
 }
 
+void expect_dimensions(nb::handle array, std::size_t count) {
+  constexpr std::size_t kAlwaysThere = 32;
+  if (count > kAlwaysThere && nb::cast<std::size_t>(array.attr("ndim")) != count)
+    throw std::invalid_argument("an array of " + std::to_string(count) +
+                                " dimensions is more than this NumPy has");
+}
+
 HitColumns::HitColumns(std::size_t count, Block& block) {
   Layout layout;
   const std::size_t at_t = layout.add<float>(count), at_primitive = layout.add<std::int32_t>(count),
@@ -100,6 +108,35 @@ HitColumns::HitColumns(std::size_t count, Block& block) {
   uv = column<float>(block, at_uv, 2);
   normal = column<float>(block, at_normal, 3);
   position = column<float>(block, at_position, 3);
+}
+
+Hit HitColumns::read(std::size_t i) const {
+  // Python may write while we read. What has been judged must not be fetched again.
+  const auto once = [](const std::int32_t& number) {
+    return static_cast<std::uint32_t>(const_cast<const volatile std::int32_t&>(number));
+  };
+  Hit hit;
+  hit.t = t.data[i];
+  hit.u = uv.data[2 * i];
+  hit.v = uv.data[2 * i + 1];
+  hit.normal = vec(normal.data + 3 * i);
+  hit.instance_id = InstanceId(once(ids.instance_id.data[i]));
+  hit.geometry_id = GeometryId(once(ids.geometry_id.data[i]));
+  hit.primitive_id = PrimId(once(ids.primitive_id.data[i]));
+  hit.part = once(part.data[i]);
+  return hit;
+}
+
+AllHits::AllHits(const Shape& leading) : shape(leading) {
+  Layout layout;
+  const std::size_t at_offsets = layout.add<std::int64_t>(count_of(shape) + 1);
+  offset_block = layout.allocate();
+  offsets = column<std::int64_t>(offset_block, at_offsets);
+}
+
+void AllHits::make_room(std::size_t hits) {
+  count = hits;
+  columns = HitColumns(count, block);
 }
 
 void HitColumns::write(std::size_t begin, std::span<const Ray> rays, std::span<const Hit> hits) {
@@ -244,7 +281,7 @@ void bind_answers(nb::module_& module) {
   const char* const shape_sig = "def shape(self) -> tuple[int, ...]";
 
   nb::class_<Hits> hits(
-      module, "Hits",
+      module, "Hits", nb::is_weak_referenceable(),
       "Closest hits as columns, one row for each ray; a miss has t = inf, ids of -1, and NaN for "
       "normal and position.");
   bind_columns(hits, [](const Hits& h) { return h.shape; });
@@ -258,7 +295,7 @@ void bind_answers(nb::module_& module) {
            })
       .def("__repr__", [](const Hits& h) { return describe("Hits", h.shape, h.columns.t.data, "hit"); });
 
-  nb::class_<AllHits> all_hits(module, "AllHits",
+  nb::class_<AllHits> all_hits(module, "AllHits", nb::is_weak_referenceable(),
                                "Every crossing of each ray as columns: the rows offsets[i] to offsets[i + "
                                "1], the end not included, are "
                                "those of ray i, by t.");
@@ -278,9 +315,10 @@ void bind_answers(nb::module_& module) {
                to_string(h.shape) + ">";
       });
 
-  nb::class_<Points>(
-      module, "Points",
-      "Nearest points as columns; none within reach has distance = inf, ids of -1, position NaN.")
+  nb::class_<Points> points(
+      module, "Points", nb::is_weak_referenceable(),
+      "Nearest points as columns; none within reach has distance = inf, ids of -1, position NaN.");
+  points
       .def_prop_ro(
           "distance", [](Points& p) { return p.distance.get(p.block, p.shape); },
           sig("def distance(self) -> numpy.typing.NDArray[numpy.float32]"), "From the point asked for.")
@@ -301,7 +339,9 @@ void bind_answers(nb::module_& module) {
           "Of the points asked for.")
       .def("__repr__", [](const Points& p) { return describe("Points", p.shape, p.distance.data, "found"); });
 
-  nb::class_<Surfaces>(module, "Surfaces", "Places of hits as columns, in world space; NaN for a miss.")
+  nb::class_<Surfaces> surfaces(module, "Surfaces", nb::is_weak_referenceable(),
+                                "Places of hits as columns, in world space; NaN for a miss.");
+  surfaces
       .def_prop_ro(
           "position", [](Surfaces& s) { return s.position.get(s.block, s.shape); },
           sig("def position(self) -> numpy.typing.NDArray[numpy.float32]"), "On the surface, within `error`.")
@@ -322,7 +362,7 @@ void bind_answers(nb::module_& module) {
           "Of the rays.")
       .def(
           "spawn",
-          [](const Surfaces& s, nb::handle directions, int threads) {
+          [](const Surfaces& s, nb::handle directions, nb::handle threads) {
             // Every place may send out several rays: (k, 3) places and (n, k, 3) directions.
             Rows rows("directions", directions, {3});
             if (rows.shape().size() < s.shape.size() ||
@@ -335,24 +375,26 @@ void bind_answers(nb::module_& module) {
             layout.add<float>(3 * count);
             const Block block = layout.allocate();
             float* const origins = reinterpret_cast<float*>(block->data());
-            run_stream(count, threads, [&](const Stream& stream) {
-              constexpr std::size_t kGrain = 4096;
-              stream.executor->for_range(0, count, kGrain, [&](std::size_t begin, std::size_t end) {
-                std::vector<float> towards(3 * (end - begin));
-                rows.read(begin, end - begin, towards.data(), 3);
-                for (std::size_t i = begin; i < end; ++i)
-                  put(origins + 3 * i, s.read(i % places).spawn(vec(&towards[3 * (i - begin)])).origin);
-              });
+            run_in_parts(count, threads, [&](std::size_t begin, std::size_t end) {
+              std::vector<float> towards(3 * (end - begin));
+              rows.read(begin, end - begin, towards.data(), 3);
+              for (std::size_t i = begin; i < end; ++i)
+                put(origins + 3 * i, s.read(i % places).spawn(vec(&towards[3 * (i - begin)])).origin);
             });
             return make_array(block, origins, rows.shape(), 3);
           },
-          nb::arg("directions").none(), nb::kw_only(), nb::arg("threads") = 0,
+          nb::arg("directions").none(), nb::kw_only(), nb::arg("threads").none() = 0,
           sig("def spawn(self, directions: numpy.typing.ArrayLike, *, threads: int = 0) -> "
               "numpy.typing.NDArray[numpy.float32]"),
           (std::string(doc::Surface_spawn) +
            "\n\nReturns the origins of these rays, of the shape of `directions`, which ends with that of the "
            "surfaces:\n(n, k, 3) sends n rays from each of k places.")
               .c_str());
+
+  def_pickle(hits);
+  def_pickle(all_hits);
+  def_pickle(points);
+  def_pickle(surfaces);
 }
 
 }  // namespace boxwood::python

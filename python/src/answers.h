@@ -5,7 +5,9 @@
 // copied, and a result of one ray costs no seven arrays.
 #pragma once
 
+#include <limits>
 #include <memory>
+#include <new>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -28,15 +30,19 @@ constexpr std::size_t kMaxSpareBytes = std::size_t(1) << 30;
 #else
 constexpr std::size_t kMaxSpareBytes = std::size_t(64) << 20;
 #endif
+/// Throws std::bad_alloc.
 Block allocate_block(std::size_t size);
 
 /// Lays columns one behind the other, each on a cache line of its own.
 class Layout {
  public:
+  /// Throws std::bad_alloc when the size is more than a number holds.
   template <class T>
   std::size_t add(std::size_t count) {
+    constexpr std::size_t kLine = 64;
+    if (count > (std::numeric_limits<std::size_t>::max() - size_ - kLine) / sizeof(T)) throw std::bad_alloc();
     const std::size_t at = size_;
-    size_ = (size_ + count * sizeof(T) + 63) / 64 * 64;
+    size_ = (size_ + count * sizeof(T) + kLine - 1) / kLine * kLine;
     return at;
   }
   Block allocate() const { return allocate_block(size_); }
@@ -45,13 +51,18 @@ class Layout {
   std::size_t size_ = 0;
 };
 
+/// Throws ValueError when NumPy has no arrays of so many dimensions.
+void expect_dimensions(nb::handle array, std::size_t count);
+
 /// An array over `data` that keeps `block` alive; rows of `width` numbers, or single numbers for width 0.
 template <class T>
 nb::object make_array(const Block& block, T* data, const Shape& leading, std::size_t width = 0) {
   Shape shape = leading;
   if (width > 0) shape.push_back(width);
   nb::capsule owner(new Block(block), [](void* p) noexcept { delete static_cast<Block*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner));
+  nb::object array = nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner));
+  expect_dimensions(array, shape.size());
+  return array;
 }
 
 /// One field of a result: where it stands in the block, and the array once somebody has asked.
@@ -84,6 +95,8 @@ struct HitColumns {
   HitColumns(std::size_t count, Block& block);
   /// Writes hits[i], which answers rays[i], as row begin + i.
   void write(std::size_t begin, std::span<const Ray> rays, std::span<const Hit> hits);
+  /// Row `i`, each number read once.
+  Hit read(std::size_t i) const;
 };
 
 /// Closest hits: one row for each ray.
@@ -91,6 +104,8 @@ struct Hits {
   Shape shape;
   Block block;
   HitColumns columns;
+
+  explicit Hits(const Shape& leading) : shape(leading), columns(count_of(leading), block) {}
 };
 
 /// All hits: row offsets[i] to offsets[i + 1] for ray i.
@@ -100,6 +115,10 @@ struct AllHits {
   Block offset_block, block;
   Column<std::int64_t> offsets;
   HitColumns columns;
+
+  /// Room for the offsets; and for the hits, once their number is known.
+  explicit AllHits(const Shape& shape);
+  void make_room(std::size_t hits);
 };
 
 /// Nearest points: one row for each point.
@@ -109,7 +128,6 @@ struct Points {
   Column<float> distance, position;
   Ids ids;
 
-  Points() = default;
   explicit Points(const Shape& shape);
   void write(std::size_t begin, std::span<const ScenePoint> points);
 };
@@ -120,7 +138,6 @@ struct Surfaces {
   Block block;
   Column<float> position, error, normal, shading_normal, uv;
 
-  Surfaces() = default;
   explicit Surfaces(const Shape& shape);
   /// Row `i`; without a surface, NaN.
   void write(std::size_t i, const Surface* surface);

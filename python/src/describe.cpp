@@ -9,6 +9,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "docstrings.h"
+#include "pickles.h"
 #include "rows.h"
 
 namespace boxwood::python {
@@ -80,8 +81,9 @@ std::vector<std::array<std::uint32_t, 3>> read_triangles(nb::handle value, std::
     for (std::size_t i = 0; i < 3 * count; ++i) {
       if (chunk[i] < 0 || static_cast<std::size_t>(chunk[i]) >= vertices)
         refuse("triangles[" + std::to_string(begin + i / 3) + ", " + std::to_string(i % 3) + "] is " +
-               std::to_string(chunk[i]) + ", expected " +
-               (vertices > 0 ? "0 to " + std::to_string(vertices - 1) : "none, since there are no vertices"));
+               (rows.is_u64() ? std::to_string(static_cast<std::uint64_t>(chunk[i]))
+                              : std::to_string(chunk[i])) +
+               ", expected " + positions_of(vertices, "vertices"));
       triangles[begin + i / 3][i % 3] = static_cast<std::uint32_t>(chunk[i]);
     }
   }
@@ -110,25 +112,29 @@ Affine3 read_transform(const char* name, nb::handle value) {
   return affine;
 }
 
-/// Spheres and disks from columns.
+/// As many radii as there are centers.
+std::vector<float> read_radii(nb::handle value, std::size_t centers) {
+  const auto radii = read_floats<float>("radii", value, {});
+  expect_length("radii", radii.size(), "centers", centers);
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    if (radii[i] < 0)
+      refuse("radii[" + std::to_string(i) + "] is " + number(radii[i]) + ", expected 0 or more");
+  return radii;
+}
+
 std::vector<Sphere> read_spheres(nb::handle centers, nb::handle radii) {
   const auto c = read_floats<Vec3>("centers", centers, {3});
-  const auto r = read_floats<float>("radii", radii, {});
-  expect_length("radii", r.size(), "centers", c.size());
-  std::vector<Sphere> spheres(c.size());
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    if (r[i] < 0) refuse("radii[" + std::to_string(i) + "] is " + number(r[i]) + ", expected 0 or more");
-    spheres[i] = Sphere{c[i], r[i]};
-  }
+  const auto r = read_radii(radii, c.size());
+  std::vector<Sphere> spheres;
+  for (std::size_t i = 0; i < c.size(); ++i) spheres.push_back(Sphere{c[i], r[i]});
   return spheres;
 }
 
 std::vector<Disk> read_disks(nb::handle centers, nb::handle normals, nb::handle radii) {
   const auto c = read_floats<Vec3>("centers", centers, {3});
   const auto n = read_floats<Vec3>("normals", normals, {3});
-  const auto r = read_floats<float>("radii", radii, {});
+  const auto r = read_radii(radii, c.size());
   expect_length("normals", n.size(), "centers", c.size());
-  expect_length("radii", r.size(), "centers", c.size());
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < c.size(); ++i) disks.push_back(Disk{c[i], n[i], r[i]});
   return disks;
@@ -153,25 +159,6 @@ std::vector<Cuboid> read_cuboids(nb::handle lower, nb::handle upper) {
   return cuboids;
 }
 
-template <class T>
-nb::bytes bytes_of(const std::vector<T>& items) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  return nb::bytes(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T));
-}
-
-template <class T>
-std::vector<T> items_of(nb::handle bytes) {
-  const nb::bytes data = nb::cast<nb::bytes>(bytes);
-  std::vector<T> items(data.size() / sizeof(T));
-  std::memcpy(static_cast<void*>(items.data()), data.c_str(), items.size() * sizeof(T));
-  return items;
-}
-
-template <class T>
-nb::bytes bytes_of_one(const T& item) {
-  return nb::bytes(reinterpret_cast<const char*>(&item), sizeof item);
-}
-
 std::size_t add_geometry(SceneDesc& desc, Shapes shapes, const std::string& name) {
   return desc.add(Geometry{std::move(shapes), {}, {}, name}).value;
 }
@@ -193,6 +180,10 @@ TriangleMesh read_mesh(nb::handle vertices, nb::handle triangles, nb::handle nor
   return mesh;
 }
 
+std::string positions_of(std::size_t count, const char* what) {
+  return count > 0 ? "0 to " + std::to_string(count - 1) : std::string("none, since there are no ") + what;
+}
+
 std::string summary(const SceneDesc& desc) {
   constexpr const char* kOne[] = {"triangle", "sphere", "quad", "cuboid", "disk", "other shape"};
   std::size_t lists[6] = {}, shapes[6] = {};
@@ -212,92 +203,17 @@ std::string summary(const SceneDesc& desc) {
   return text;
 }
 
+nb::list names_of(const SceneDesc& desc) {
+  nb::list names;
+  for (const Geometry& geometry : desc.geometries) names.append(geometry.name);
+  return names;
+}
+
 nb::object array_of(const Affine3& m) {
   auto* const values = new double[16]{m.x.x, m.y.x, m.z.x, m.origin.x, m.x.y, m.y.y, m.z.y, m.origin.y,
                                       m.x.z, m.y.z, m.z.z, m.origin.z, 0,     0,     0,     1};
   nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<double*>(p); });
   return nb::cast(nb::ndarray<nb::numpy, double, nb::shape<4, 4>>(values, {4, 4}, owner));
-}
-
-nb::tuple state_of(const SceneDesc& desc) {
-  nb::list geometries;
-  for (const Geometry& geometry : desc.geometries) {
-    nb::list columns;
-    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
-      columns.append(bytes_of(mesh->positions));
-      columns.append(bytes_of(mesh->indices));
-      columns.append(bytes_of(mesh->normals));
-      columns.append(bytes_of(mesh->uvs));
-    } else if (const auto* spheres = std::get_if<std::vector<Sphere>>(&geometry.shapes)) {
-      columns.append(bytes_of(*spheres));
-    } else if (const auto* quads = std::get_if<std::vector<Quad>>(&geometry.shapes)) {
-      columns.append(bytes_of(*quads));
-    } else if (const auto* cuboids = std::get_if<std::vector<Cuboid>>(&geometry.shapes)) {
-      columns.append(bytes_of(*cuboids));
-    } else if (const auto* disks = std::get_if<std::vector<Disk>>(&geometry.shapes)) {
-      columns.append(bytes_of(*disks));
-    } else {
-      throw nb::type_error("a scene with shapes of a user's own kind cannot be pickled");
-    }
-    geometries.append(nb::make_tuple(geometry.name, geometry.shapes.index(), nb::tuple(columns)));
-  }
-  nb::object camera = desc.camera ? nb::object(bytes_of_one(*desc.camera)) : nb::none();
-  return nb::make_tuple(desc.name, nb::tuple(geometries), bytes_of(desc.instances), camera, desc.warnings);
-}
-
-SceneDesc desc_of(const nb::tuple& state) {
-  SceneDesc desc;
-  desc.name = nb::cast<std::string>(state[0]);
-  for (nb::handle entry : nb::cast<nb::tuple>(state[1])) {
-    const nb::tuple columns = nb::cast<nb::tuple>(entry[2]);
-    Shapes shapes;
-    switch (nb::cast<int>(entry[1])) {
-      case 0:
-        shapes = TriangleMesh{items_of<Vec3>(columns[0]), items_of<std::array<std::uint32_t, 3>>(columns[1]),
-                              items_of<Vec3>(columns[2]), items_of<Vec2>(columns[3])};
-        break;
-      case 1:
-        shapes = items_of<Sphere>(columns[0]);
-        break;
-      case 2:
-        shapes = items_of<Quad>(columns[0]);
-        break;
-      case 3:
-        shapes = items_of<Cuboid>(columns[0]);
-        break;
-      case 4:
-        shapes = items_of<Disk>(columns[0]);
-        break;
-      default:
-        refuse("this pickle is not from this version of boxwood");
-    }
-    add_geometry(desc, std::move(shapes), nb::cast<std::string>(entry[0]));
-  }
-  desc.instances = items_of<Instance>(state[2]);
-  if (!state[3].is_none()) desc.camera = items_of<Camera>(state[3]).at(0);
-  desc.warnings = nb::cast<std::vector<std::string>>(state[4]);
-  return desc;
-}
-
-nb::tuple state_of(const BuildOptions& o) {
-  return nb::make_tuple(static_cast<int>(o.method), o.max_depth, o.leaf_size, o.block_size, o.bins,
-                        o.traversal_cost, o.reinsertion_rounds, o.reinsertion_share, o.split_share,
-                        o.is_compact);
-}
-
-BuildOptions options_of(const nb::tuple& state) {
-  BuildOptions o;
-  o.method = static_cast<Method>(nb::cast<int>(state[0]));
-  o.max_depth = nb::cast<int>(state[1]);
-  o.leaf_size = nb::cast<int>(state[2]);
-  o.block_size = nb::cast<int>(state[3]);
-  o.bins = nb::cast<int>(state[4]);
-  o.traversal_cost = nb::cast<float>(state[5]);
-  o.reinsertion_rounds = nb::cast<int>(state[6]);
-  o.reinsertion_share = nb::cast<float>(state[7]);
-  o.split_share = nb::cast<float>(state[8]);
-  o.is_compact = nb::cast<bool>(state[9]);
-  return o;
 }
 
 void bind_description(nb::module_& module) {
@@ -310,11 +226,13 @@ void bind_description(nb::module_& module) {
       .value("sweep_sah", Method::sweep_sah, doc::sweep_sah)
       .value("ploc", Method::ploc, doc::ploc);
 
-  nb::class_<BuildOptions>(module, "BuildOptions", doc::BuildOptions)
-      .def(nb::init<>())
+  nb::class_<BuildOptions> options(module, "BuildOptions", doc::BuildOptions);
+  def_pickle(options);
+  options.def(nb::init<>())
       .def_rw("method", &BuildOptions::method, "See Method.")
       .def_rw("max_depth", &BuildOptions::max_depth, doc::BuildOptions_max_depth)
       .def_rw("leaf_size", &BuildOptions::leaf_size, doc::BuildOptions_leaf_size)
+      .def_rw("block_size", &BuildOptions::block_size, doc::BuildOptions_block_size)
       .def_rw("bins", &BuildOptions::bins, doc::BuildOptions_bins)
       .def_rw("traversal_cost", &BuildOptions::traversal_cost, doc::BuildOptions_traversal_cost)
       .def_rw("reinsertion_rounds", &BuildOptions::reinsertion_rounds, doc::BuildOptions_reinsertion_rounds)
@@ -324,8 +242,6 @@ void bind_description(nb::module_& module) {
       .def_static("fast", &BuildOptions::fast, doc::BuildOptions_fast)
       .def_static("balanced", &BuildOptions::balanced, doc::BuildOptions_balanced)
       .def_static("best", &BuildOptions::best, doc::BuildOptions_best)
-      .def("__getstate__", [](const BuildOptions& o) { return state_of(o); })
-      .def("__setstate__", [](BuildOptions& o, nb::tuple state) { new (&o) BuildOptions(options_of(state)); })
       .def("__repr__", [](const BuildOptions& o) {
         constexpr const char* kNames[] = {"longest_axis", "binned_sah", "sweep_sah", "ploc"};
         return std::string("<boxwood.BuildOptions: ") + kNames[static_cast<int>(o.method)] + ", leaves of " +
@@ -333,26 +249,35 @@ void bind_description(nb::module_& module) {
                " of reinsertion, split_share " + number(o.split_share) + (o.is_compact ? ", compact>" : ">");
       });
 
-  nb::class_<Camera>(module, "Camera", doc::Camera)
+  nb::class_<Camera> camera(module, "Camera", doc::Camera);
+  def_pickle(camera);
+  camera
       .def_prop_ro(
           "world_from_camera", [](const Camera& c) { return array_of(c.world_from_camera); },
           sig("def world_from_camera(self) -> numpy.typing.NDArray[numpy.float64]"),
           "(4, 4): takes camera coordinates to the world.")
       .def_ro("fov_deg", &Camera::fov_deg, doc::Camera_fov_deg)
+      .def_ro("orthographic_size", &Camera::orthographic_size, doc::Camera_orthographic_size)
+      .def_ro("lens_radius", &Camera::lens_radius, doc::Camera_lens_radius)
+      .def_ro("focus_distance", &Camera::focus_distance, doc::Camera_focus_distance)
       .def_ro("width", &Camera::width, doc::Camera_width)
       .def_ro("height", &Camera::height, "As width.");
 
-  nb::class_<SceneDesc>(
+  nb::class_<SceneDesc> scene_desc(
       module, "SceneDesc",
       "What is in a scene: plain data that Scene builds its trees from. A geometry is defined once and "
       "appears "
-      "wherever an\ninstance places it; without any instance, each appears once, where it was defined.")
-      .def(nb::init<>())
+      "wherever an\ninstance places it; without any instance, each appears once, where it was defined.");
+  def_pickle(scene_desc);
+  scene_desc.def(nb::init<>())
       .def_rw("name", &SceneDesc::name, "From the file, or what you like.")
       .def_ro("warnings", &SceneDesc::warnings, doc::SceneDesc_warnings)
       .def_prop_ro(
           "geometry_count", [](const SceneDesc& d) { return d.geometries.size(); },
           "How many have been added.")
+      .def_prop_ro(
+          "geometry_names", [](const SceneDesc& d) { return names_of(d); },
+          sig("def geometry_names(self) -> list[str]"), kGeometryNames)
       .def_prop_ro(
           "instance_count", [](const SceneDesc& d) { return d.instances.size(); },
           "How many have been added; with none, each geometry is shown where it was defined.")
@@ -412,23 +337,23 @@ void bind_description(nb::module_& module) {
           "Disks: centers (n, 3), normals (n, 3) of any length, radii (n,). Returns the geometry's id.")
       .def(
           "add_instance",
-          [](SceneDesc& desc, std::size_t geometry, nb::handle world_from_object) {
-            if (geometry >= desc.geometries.size())
-              refuse("geometry: got " + std::to_string(geometry) + ", expected the id of one of " +
-                     std::to_string(desc.geometries.size()) + " geometries");
+          [](SceneDesc& desc, nb::handle geometry, nb::handle world_from_object) {
+            const long long id = read_integer("geometry", geometry);
+            if (id < 0 || static_cast<std::size_t>(id) >= desc.geometries.size())
+              refuse("geometry: got " + repr_of(geometry) + ", expected " +
+                     positions_of(desc.geometries.size(), "geometries"));
             return desc
-                .add(Instance{
-                    GeometryId(geometry), read_transform("world_from_object", world_from_object), {}})
+                .add(Instance{GeometryId(static_cast<std::uint32_t>(id)),
+                              read_transform("world_from_object", world_from_object),
+                              {}})
                 .value;
           },
-          arg("geometry"), arg("world_from_object") = nb::none(),
+          arg("geometry").none(), arg("world_from_object") = nb::none(),
           sig("def add_instance(self, geometry: int, world_from_object: numpy.typing.ArrayLike | None = "
               "None) -> "
               "int"),
           "Places a geometry, by a (4, 4) transform: world = m @ (x, y, z, 1); None leaves it where it was "
           "defined.\nReturns the instance's id.")
-      .def("__getstate__", [](const SceneDesc& d) { return state_of(d); })
-      .def("__setstate__", [](SceneDesc& d, nb::tuple state) { new (&d) SceneDesc(desc_of(state)); })
       .def("__repr__", [](const SceneDesc& d) { return "<boxwood.SceneDesc: " + summary(d) + ">"; });
 }
 

@@ -16,14 +16,18 @@ namespace nb = nanobind;
 /// name the argument and the place.
 TriangleMesh read_mesh(nb::handle vertices, nb::handle triangles, nb::handle normals, nb::handle uvs);
 
+/// What is expected of the position of one among so many, for messages: "0 to 6".
+std::string positions_of(std::size_t count, const char* what);
+
 /// "2 meshes (4096 triangles), 1 list of spheres (10)".
 std::string summary(const SceneDesc& desc);
 
-/// What pickle carries: plain tuples, numbers and bytes.
-nb::tuple state_of(const SceneDesc& desc);
-SceneDesc desc_of(const nb::tuple& state);
-nb::tuple state_of(const BuildOptions& options);
-BuildOptions options_of(const nb::tuple& state);
+/// Those of the geometries, in order.
+nb::list names_of(const SceneDesc& desc);
+inline constexpr char kGeometryNames[] =
+    "What each geometry is called, by its geometry_id: from the file, or as add_mesh and the others were "
+    "told; "
+    "may be empty.";
 
 /// (4, 4), in double, as NumPy users write transforms: world = m @ (x, y, z, 1).
 nb::object array_of(const Affine3& m);

@@ -38,11 +38,9 @@ void RayRows::fill(std::size_t begin, std::span<Ray> rays) const {
 namespace {
 
 Hits closest_hit(const SceneObject& s, nb::handle origins, nb::handle directions, nb::handle t_min,
-                 nb::handle t_max, int threads) {
+                 nb::handle t_max, nb::handle threads) {
   const RayRows rows(origins, directions, t_min, t_max);
-  Hits hits;
-  hits.shape = rows.shape();
-  hits.columns = HitColumns(rows.count(), hits.block);
+  Hits hits(rows.shape());
   run_stream(rows.count(), threads, [&](const Stream& stream) {
     stream_closest_hit(
         s.scene, stream, [&](std::size_t begin, std::span<Ray> rays) { rows.fill(begin, rays); },
@@ -54,7 +52,7 @@ Hits closest_hit(const SceneObject& s, nb::handle origins, nb::handle directions
 }
 
 nb::object any_hit(const SceneObject& s, nb::handle origins, nb::handle directions, nb::handle t_min,
-                   nb::handle t_max, int threads) {
+                   nb::handle t_max, nb::handle threads) {
   const RayRows rows(origins, directions, t_min, t_max);
   Layout layout;
   layout.add<bool>(rows.count());
@@ -71,7 +69,7 @@ nb::object any_hit(const SceneObject& s, nb::handle origins, nb::handle directio
 }
 
 nb::object count_hits(const SceneObject& s, nb::handle origins, nb::handle directions, nb::handle t_min,
-                      nb::handle t_max, int threads) {
+                      nb::handle t_max, nb::handle threads) {
   const RayRows rows(origins, directions, t_min, t_max);
   Layout layout;
   layout.add<std::int64_t>(rows.count());
@@ -88,14 +86,9 @@ nb::object count_hits(const SceneObject& s, nb::handle origins, nb::handle direc
 }
 
 AllHits all_hits(const SceneObject& s, nb::handle origins, nb::handle directions, nb::handle t_min,
-                 nb::handle t_max, int threads) {
+                 nb::handle t_max, nb::handle threads) {
   const RayRows rows(origins, directions, t_min, t_max);
-  AllHits all;
-  all.shape = rows.shape();
-  Layout layout;
-  layout.add<std::int64_t>(rows.count() + 1);
-  all.offset_block = layout.allocate();
-  all.offsets.data = reinterpret_cast<std::int64_t*>(all.offset_block->data());
+  AllHits all(rows.shape());
   all.offsets.data[0] = 0;
 
   // Nobody knows beforehand how many there are: keep what each chunk finds, by its first ray.
@@ -115,8 +108,7 @@ AllHits all_hits(const SceneObject& s, nb::handle origins, nb::handle directions
 
     // Add up the counts, then write the columns and let go of the chunks.
     for (std::size_t i = 0; i < rows.count(); ++i) all.offsets.data[i + 1] += all.offsets.data[i];
-    all.count = static_cast<std::size_t>(all.offsets.data[rows.count()]);
-    all.columns = HitColumns(all.count, all.block);
+    all.make_room(static_cast<std::size_t>(all.offsets.data[rows.count()]));
     std::vector<std::pair<std::size_t, std::vector<Hit>*>> in_order;
     for (auto& [begin, hits] : chunks) in_order.emplace_back(begin, &hits);
     parallel_for(*stream.executor, 0, in_order.size(), 1, [&](std::size_t c) {
@@ -137,7 +129,7 @@ AllHits all_hits(const SceneObject& s, nb::handle origins, nb::handle directions
   return all;
 }
 
-Points closest_point(const SceneObject& s, nb::handle points, nb::handle max_distance, int threads) {
+Points closest_point(const SceneObject& s, nb::handle points, nb::handle max_distance, nb::handle threads) {
   Rows point_rows("points", points, {3}), distance_rows("max_distance", max_distance, {});
   const Shape shape = broadcast_shapes({&point_rows, &distance_rows});
   point_rows.broadcast_to(shape);
@@ -159,51 +151,49 @@ Points closest_point(const SceneObject& s, nb::handle points, nb::handle max_dis
 }
 
 Surfaces surface_at(const SceneObject& s, nb::handle origins, nb::handle directions, const Hits& hits,
-                    int threads) {
+                    nb::handle threads) {
   const RayRows rows(origins, directions, nb::float_(0.0), nb::float_(0.0));
   if (rows.shape() != hits.shape)
     throw std::invalid_argument("hits: got shape " + to_string(hits.shape) + ", expected " +
                                 to_string(rows.shape()) + ", that of the rays");
-  // Another scene's hits would name things that are not here.
+
+  // Another scene's hits name things that are not here, and so may columns that somebody has written to, even
+  // while they are read: each hit is looked at once, and then judged.
   const Scene::Parts& parts = s.scene.parts();
-  const HitColumns& columns = hits.columns;
-  const auto is_ours = [&](std::size_t i) {
-    const auto instance = static_cast<std::uint32_t>(columns.ids.instance_id.data[i]),
-               geometry = static_cast<std::uint32_t>(columns.ids.geometry_id.data[i]),
-               primitive = static_cast<std::uint32_t>(columns.ids.primitive_id.data[i]);
-    return instance < parts.instances.size() && parts.instances[instance].geometry.value == geometry &&
-           primitive < primitive_count(parts.desc.geometries[geometry]);
+  const auto is_ours = [&](const Hit& hit) {
+    constexpr std::uint32_t kCuboidSides = 6;
+    if (hit.instance_id.value >= parts.instances.size() ||
+        parts.instances[hit.instance_id.value].geometry != hit.geometry_id)
+      return false;
+    const Geometry& geometry = parts.desc.geometries[hit.geometry_id.value];
+    const bool is_cuboid = std::holds_alternative<std::vector<Cuboid>>(geometry.shapes);
+    return hit.primitive_id.value < primitive_count(geometry) && (!is_cuboid || hit.part < kCuboidSides);
   };
-  for (std::size_t i = 0; i < rows.count(); ++i)
-    if (columns.t.data[i] < kInfinity && !is_ours(i))
-      throw std::invalid_argument("hits: hit " + std::to_string(i) + " is on nothing of this scene");
+  std::mutex mutex;
+  std::size_t first_foreign = rows.count();
 
   Surfaces surfaces(rows.shape());
-  run_stream(rows.count(), threads, [&](const Stream& stream) {
-    constexpr std::size_t kGrain = 4096;
-    stream.executor->for_range(0, rows.count(), kGrain, [&](std::size_t begin, std::size_t end) {
-      std::vector<Ray> rays(end - begin);
-      rows.fill(begin, rays);
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!(columns.t.data[i] < kInfinity)) {
-          surfaces.write(i, nullptr);
-          continue;
-        }
-        Hit hit;
-        hit.t = columns.t.data[i];
-        hit.u = columns.uv.data[2 * i];
-        hit.v = columns.uv.data[2 * i + 1];
-        hit.normal = {columns.normal.data[3 * i], columns.normal.data[3 * i + 1],
-                      columns.normal.data[3 * i + 2]};
-        hit.instance_id = InstanceId(static_cast<std::uint32_t>(columns.ids.instance_id.data[i]));
-        hit.geometry_id = GeometryId(static_cast<std::uint32_t>(columns.ids.geometry_id.data[i]));
-        hit.primitive_id = PrimId(static_cast<std::uint32_t>(columns.ids.primitive_id.data[i]));
-        hit.part = static_cast<std::uint32_t>(columns.part.data[i]);
-        const Surface surface = boxwood::surface_at(s.scene, rays[i - begin], hit);
-        surfaces.write(i, &surface);
+  run_in_parts(rows.count(), threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<Ray> rays(end - begin);
+    rows.fill(begin, rays);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Hit hit = hits.columns.read(i);
+      const bool is_foreign = hit.is_hit() && !is_ours(hit);
+      if (is_foreign) {
+        std::lock_guard lock(mutex);
+        first_foreign = std::min(first_foreign, i);
       }
-    });
+      if (!hit.is_hit() || is_foreign) {
+        surfaces.write(i, nullptr);
+        continue;
+      }
+      const Surface surface = boxwood::surface_at(s.scene, rays[i - begin], hit);
+      surfaces.write(i, &surface);
+    }
   });
+  if (first_foreign < rows.count())
+    throw std::invalid_argument("hits: hit " + std::to_string(first_foreign) +
+                                " is on nothing of this scene");
   return surfaces;
 }
 
@@ -226,8 +216,8 @@ void bind_queries(nb::class_<SceneObject>& scene) {
   const nb::object zero = nb::float_(0.0), infinity = nb::float_(std::numeric_limits<double>::infinity());
   const auto def_rays = [&](const char* name, auto function, const char* doc, const auto& signature) {
     scene.def(name, function, arg("origins").none(), arg("directions").none(), nb::kw_only(),
-              arg("t_min").none() = zero, arg("t_max").none() = infinity, arg("threads") = 0, signature,
-              (std::string(doc) + kRayArguments).c_str());
+              arg("t_min").none() = zero, arg("t_max").none() = infinity, arg("threads").none() = 0,
+              signature, (std::string(doc) + kRayArguments).c_str());
   };
   def_rays("closest_hit", &closest_hit, doc::Scene_closest_hit, BOXWOOD_RAY_SIGNATURE("closest_hit", "Hits"));
   def_rays("any_hit", &any_hit, doc::Scene_any_hit,
@@ -236,7 +226,7 @@ void bind_queries(nb::class_<SceneObject>& scene) {
   def_rays("count_hits", &count_hits, doc::Scene_count_hits,
            BOXWOOD_RAY_SIGNATURE("count_hits", "numpy.typing.NDArray[numpy.int64]"));
   scene.def("closest_point", &closest_point, arg("points").none(), nb::kw_only(),
-            arg("max_distance").none() = infinity, arg("threads") = 0,
+            arg("max_distance").none() = infinity, arg("threads").none() = 0,
             nb::sig("def closest_point(self, points: numpy.typing.ArrayLike, *, max_distance: "
                     "numpy.typing.ArrayLike = float('inf'), threads: int = 0) -> Points"),
             (std::string(doc::Scene_closest_point) + "\n\npoints: an array of shape (..., 3); max_distance: "
@@ -245,7 +235,7 @@ void bind_queries(nb::class_<SceneObject>& scene) {
                 .c_str());
   scene.def(
       "surface_at", &surface_at, arg("origins").none(), arg("directions").none(), arg("hits"), nb::kw_only(),
-      arg("threads") = 0,
+      arg("threads").none() = 0,
       nb::sig("def surface_at(self, origins: numpy.typing.ArrayLike, directions: numpy.typing.ArrayLike, "
               "hits: Hits, *, threads: int = 0) -> Surfaces"),
       "Works out the places of `hits`, which closest_hit returned for these rays: with error bounds, "

@@ -1,7 +1,9 @@
 #include "rows.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -24,8 +26,11 @@ std::string text(nb::handle value) {
 }  // namespace
 
 std::size_t count_of(const Shape& shape) {
+  // By strides of zero, arrays have more rows than there are bytes; two of them may have more than 2^64.
+  constexpr std::size_t kTooMany = std::numeric_limits<std::size_t>::max() / 2;
+  if (std::find(shape.begin(), shape.end(), 0) != shape.end()) return 0;
   std::size_t count = 1;
-  for (const std::size_t size : shape) count *= size;
+  for (const std::size_t size : shape) count = count > kTooMany / size ? kTooMany : count * size;
   return count;
 }
 
@@ -36,16 +41,37 @@ std::string to_string(const Shape& shape, const Shape& row) {
   return "(" + list + (shape.size() + row.size() == 1 ? ",)" : ")");
 }
 
+long long read_integer(const char* name, nb::handle value) {
+  nb::object integer;
+  if (!PyBool_Check(value.ptr())) integer = nb::steal(PyNumber_Index(value.ptr()));
+  if (!integer.is_valid()) {
+    PyErr_Clear();
+    throw nb::type_error((std::string(name) + ": got " + repr_of(value) + ", expected an integer").c_str());
+  }
+  int overflow = 0;
+  const long long number = PyLong_AsLongLongAndOverflow(integer.ptr(), &overflow);
+  if (overflow == 0) return number;
+  return overflow > 0 ? std::numeric_limits<long long>::max() : std::numeric_limits<long long>::min();
+}
+
+std::string repr_of(nb::handle value) {
+  return nb::cast<std::string>(nb::repr(value));
+}
+
 Rows::Rows(const char* name, nb::handle value, const Shape& row, Accept accept) : name_(name) {
   // A plain number is common and needs no array.
   const bool is_integer = PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr());
   if (row.empty() && accept == Accept::floats_and_integers && (PyFloat_Check(value.ptr()) || is_integer)) {
     scalar_ = is_integer ? PyLong_AsDouble(value.ptr()) : PyFloat_AsDouble(value.ptr());
-    if (PyErr_Occurred()) nb::raise_python_error();
+    if (PyErr_Occurred()) {
+      PyErr_Clear();
+      throw std::invalid_argument(std::string(name) + ": got an integer that is too large for a float");
+    }
     data_ = reinterpret_cast<const char*>(&scalar_);
     merge_axes();
     return;
   }
+  refuse_masked(value);
   if (!try_buffer(value, accept)) convert(value, accept);
   data_ = static_cast<const char*>(view_.buf);
 
@@ -62,8 +88,16 @@ Rows::Rows(const char* name, nb::handle value, const Shape& row, Accept accept) 
     throw std::invalid_argument(std::string(name) + ": got an array of shape " + got +
                                 ", expected shape (..." + expected + ")");
   }
+  // Some, such as ctypes, leave out the strides of what lies without gaps.
+  strides_ = view_.strides;
+  if (!strides_) {
+    own_strides_.resize(ndim);
+    Py_ssize_t stride = view_.itemsize;
+    for (std::size_t i = ndim; i-- > 0; stride *= view_.shape[i]) own_strides_[i] = stride;
+    strides_ = own_strides_.data();
+  }
   for (std::size_t i = 0; i < ndim; ++i) {
-    const Axis axis{static_cast<std::size_t>(view_.shape[i]), view_.strides[i]};
+    const Axis axis{static_cast<std::size_t>(view_.shape[i]), strides_[i]};
     if (i < ndim - row.size()) {
       shape_.push_back(axis.size);
       leading_.push_back(axis);
@@ -78,16 +112,30 @@ Rows::~Rows() {
   if (has_view_) PyBuffer_Release(&view_);
 }
 
+void Rows::refuse_masked(nb::handle value) const {
+  // NumPy's masked arrays show their numbers to whoever asks, and only they know which of them do not count.
+  static const nb::handle plain = nb::object(numpy().attr("ndarray")).release();
+  if (value.type().is(plain) ||
+      !PyObject_TypeCheck(value.ptr(), reinterpret_cast<PyTypeObject*>(plain.ptr())))
+    return;
+  const nb::object mask = nb::getattr(value, "mask", nb::none());
+  if (!mask.is_none() && nb::cast<bool>(nb::bool_(numpy().attr("any")(mask))))
+    throw nb::type_error((std::string(name_) +
+                          ": got an array with masked numbers, expected plain ones, such as .filled() gives")
+                             .c_str());
+}
+
 bool Rows::try_buffer(nb::handle value, Accept accept) {
-  if (!PyObject_CheckBuffer(value.ptr())) return false;
+  if (!PyObject_CheckBuffer(value.ptr()) || PyBytes_Check(value.ptr())) return false;
   if (PyObject_GetBuffer(value.ptr(), &view_, PyBUF_STRIDES | PyBUF_FORMAT) != 0) {
     PyErr_Clear();
     return false;
   }
 
-  // One letter says the type; '@', '=' and '<' before it say that the bytes are in this machine's order.
+  // One letter says the type; what stands before it may say that the bytes are in this machine's order.
+  constexpr char kOwnOrder = std::endian::native == std::endian::little ? '<' : '>';
   const char* format = view_.format ? view_.format : "B";
-  if (*format == '@' || *format == '=' || *format == '<') ++format;
+  if (*format == '@' || *format == '=' || *format == kOwnOrder) ++format;
   std::optional<Number> number;
   if (format[0] != 0 && format[1] == 0) {
     const Py_ssize_t size = view_.itemsize;
@@ -113,7 +161,11 @@ void Rows::convert(nb::handle value, Accept accept) {
   try {
     array = numpy().attr("asarray")(value);
   } catch (nb::python_error& error) {
-    throw nb::value_error((std::string(name_) + ": not an array: " + error.what()).c_str());
+    // Ctrl-C and a lack of memory are no fault of the argument.
+    if (!error.matches(PyExc_Exception) || error.matches(PyExc_MemoryError)) throw;
+    const bool is_value = error.matches(PyExc_ValueError);
+    nb::raise_from(error, is_value ? PyExc_ValueError : PyExc_TypeError, "%s: not an array: %s", name_,
+                   text(error.value()).c_str());
   }
   const std::string kind = text(array.attr("dtype").attr("kind"));
   const bool is_integer = kind == "i" || kind == "u";
@@ -137,7 +189,7 @@ void Rows::broadcast_to(const Shape& shape) {
   for (std::size_t i = 0; i < shape.size(); ++i) {
     axes[i] = {shape[i], 0};
     const std::size_t missing = shape.size() - shape_.size();
-    if (i >= missing && shape_[i - missing] != 1) axes[i].stride = view_.strides[i - missing];
+    if (i >= missing && shape_[i - missing] != 1) axes[i].stride = strides_[i - missing];
   }
   shape_ = shape;
   leading_ = std::move(axes);

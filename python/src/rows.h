@@ -18,9 +18,16 @@ namespace nb = nanobind;
 /// The leading dimensions of arrays: (480, 640) for one of shape (480, 640, 3); empty for a single row.
 using Shape = std::vector<std::size_t>;
 
+/// How many rows that is; more than memory holds when it is more than a number holds.
 std::size_t count_of(const Shape& shape);
 /// "(480, 640, 3)", with `row` behind the leading dimensions.
 std::string to_string(const Shape& shape, const Shape& row = {});
+
+/// The whole number that an argument is; the nearest of 64 bits when it has more. Throws TypeError.
+long long read_integer(const char* name, nb::handle value);
+
+/// As Python writes it: for messages.
+std::string repr_of(nb::handle value);
 
 /// An array whose last `row` dimensions make one row, and whose others count rows.
 class Rows {
@@ -34,6 +41,8 @@ class Rows {
   Rows(const Rows&) = delete;
 
   const char* name() const { return name_; }
+  /// Numbers of 64 bits without a sign, which read() gives as negative ones where they are too large.
+  bool is_u64() const { return number_ == Number::u64; }
   const Shape& shape() const { return shape_; }
   std::size_t count() const { return count_of(shape_); }
 
@@ -53,6 +62,7 @@ class Rows {
     std::ptrdiff_t stride;  // bytes
   };
 
+  void refuse_masked(nb::handle value) const;
   bool try_buffer(nb::handle value, Accept accept);
   void convert(nb::handle value, Accept accept);
   template <class T, class Out>
@@ -67,9 +77,11 @@ class Rows {
   double scalar_ = 0;  // of a plain Python number
   const char* data_ = nullptr;
   Number number_ = Number::f64;
-  Shape shape_;                // leading
-  std::vector<Axis> leading_;  // of shape_, then merged
-  std::vector<Axis> row_;      // inside a row
+  const Py_ssize_t* strides_ = nullptr;  // of all dimensions
+  std::vector<Py_ssize_t> own_strides_;  // where the view has none
+  Shape shape_;                          // leading
+  std::vector<Axis> leading_;            // of shape_, then merged
+  std::vector<Axis> row_;                // inside a row
 };
 
 /// What all of them broadcast to. Throws ValueError that names two which do not fit.

@@ -17,8 +17,9 @@ namespace boxwood::python {
 
 namespace nb = nanobind;
 
-/// Executors are made once for each number of threads and kept. Throws ValueError outside of 0 to 1024.
-Executor& executor_of(int threads);
+/// What the argument `threads` of a call asks for. Executors are made once for each number of threads and
+/// kept. Throws ValueError outside of 0 to 1024, TypeError for what is no integer.
+Executor& executor_of(nb::handle threads);
 
 /// Asks Python for signals, at most every 20 ms. For the calling thread alone.
 class Signals {
@@ -31,7 +32,10 @@ class Signals {
 };
 
 /// Calls work(stream) without the GIL; what a signal raised in the meantime is thrown.
-void run_stream(std::size_t count, int threads, const std::function<void(const Stream&)>& work);
+void run_stream(std::size_t count, nb::handle threads, const std::function<void(const Stream&)>& work);
+
+/// Calls work(begin, end) for parts of [0, count), likewise.
+void run_in_parts(std::size_t count, nb::handle threads, const Executor::Range& work);
 
 /// Calls work(progress) without the GIL, on a thread of its own when `is_long`, so that this one can wait for
 /// signals; after one, `progress` returns false.

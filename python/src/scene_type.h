@@ -13,7 +13,7 @@ struct SceneObject {
 };
 
 /// Builds without the GIL, and so that Ctrl-C ends it.
-SceneObject build_scene(SceneDesc desc, BuildOptions options, int threads);
+SceneObject build_scene(SceneDesc desc, BuildOptions options, nb::handle threads);
 
 /// The class Scene: how it comes to be and what it tells of itself.
 void bind_scene(nb::module_& module);

@@ -9,7 +9,7 @@
 namespace boxwood::python {
 namespace {
 
-double time_closest_hit(const SceneObject& s, nb::handle origins, nb::handle directions, int threads) {
+double time_closest_hit(const SceneObject& s, nb::handle origins, nb::handle directions, nb::handle threads) {
   const RayRows rows(origins, directions, nb::float_(0.0), nb::float_(kInfinity));
   std::vector<Ray> rays(rows.count());
   std::vector<Hit> hits(rows.count());
@@ -26,7 +26,7 @@ double time_closest_hit(const SceneObject& s, nb::handle origins, nb::handle dir
 void bind_yardstick(nb::module_& module) {
   module.def(
       "time_closest_hit", &time_closest_hit, nb::arg("scene"), nb::arg("origins").none(),
-      nb::arg("directions").none(), nb::arg("threads") = 0,
+      nb::arg("directions").none(), nb::arg("threads").none() = 0,
       nb::sig("def time_closest_hit(scene: Scene, origins: numpy.typing.ArrayLike, directions: "
               "numpy.typing.ArrayLike, threads: int = 0) -> float"),
       "Seconds that Scene::closest_hit of C++ takes for these rays, arrays in and arrays out left aside.");

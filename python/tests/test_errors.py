@@ -82,7 +82,7 @@ def test_shapes_and_instances():
         desc.add_spheres(np.zeros((2, 3)), [1, -1])
     with raises(ValueError, "corners", r"\(4, 3\)", r"\(\.\.\., 4, 3\)|\(n, 4, 3\)"):
         desc.add_quads(np.zeros((4, 3)))
-    with raises(ValueError, "geometry", "got 0", "0 geometries"):
+    with raises(ValueError, "geometry", "got 0", "no geometries"):
         desc.add_instance(0)
     ball = desc.add_spheres([[0, 0, 0]], [1])
     with raises(ValueError, "world_from_object", r"\(3, 3\)", r"4, 4\)"):
@@ -91,7 +91,7 @@ def test_shapes_and_instances():
         desc.add_instance(ball, np.diag([1, 1, 0, 1]))
     with raises(ValueError, "world_from_object", "last row", "0 0 0 1"):
         desc.add_instance(ball, np.eye(4).T + np.eye(4)[::-1])
-    with pytest.raises(TypeError):
+    with raises(ValueError, "geometry", "got -1", "0 to 0"):
         desc.add_instance(-1)
 
 

@@ -1,6 +1,8 @@
 """Scenes in the life of a program: threads, signals, pickles, memory."""
 
+import base64
 import copy
+import json
 import multiprocessing
 import os
 import pickle
@@ -68,6 +70,22 @@ def test_what_a_file_says_is_pickled(tmp_path):
     np.testing.assert_array_equal(other.camera.world_from_camera, made.camera.world_from_camera)
 
 
+def test_cameras_of_files(tmp_path):
+    triangle = base64.b64encode(np.eye(3, dtype="<f4").tobytes()).decode()
+    gltf = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"camera": 0, "mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + triangle}],
+            "cameras": [{"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "zfar": 100, "znear": 0.1}}]}
+    (tmp_path / "flat.gltf").write_text(json.dumps(gltf))
+    assert bw.load(tmp_path / "flat.gltf").camera.orthographic_size == 4  # parallel rays
+    (tmp_path / "lens.pbrt").write_text(
+        'Camera "perspective" "float fov" 40 "float lensradius" 0.25 "float focaldistance" 7\nWorldBegin\nShape "sphere"\n')
+    camera = bw.load(tmp_path / "lens.pbrt").camera
+    assert (camera.fov_deg, camera.lens_radius, camera.focus_distance, camera.orthographic_size) == (40, 0.25, 7, 0)
+
+
 def test_repr_and_stats(mixed, scene):
     text = repr(bw.Scene(mixed))
     for word in ("mixed", "1 mesh of 1 triangle", "1 sphere", "1 quad", "1 cuboid", "1 disk", "5 instances"):
@@ -85,6 +103,7 @@ def test_repr_and_stats(mixed, scene):
 
 def test_instances_and_meshes_can_be_read(mixed):
     scene = bw.Scene(mixed)
+    assert scene.geometry_names == mixed.geometry_names == ["leaf", "", "", "", ""]
     assert scene.geometry_count == 5 and scene.instance_count == 5
     geometry, m = scene.instance(3)
     assert geometry == 3 and m[0, 3] == 3 and m.shape == (4, 4)
@@ -100,6 +119,7 @@ def test_instances_and_meshes_can_be_read(mixed):
 def compact():
     options = bw.BuildOptions.balanced()
     options.is_compact = True
+    options.block_size = 2
     return options
 
 
@@ -163,6 +183,45 @@ def test_processes(scene, rays, method):
             np.testing.assert_array_equal(t, expected)
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_a_fork_in_the_middle_of_a_question():
+    # A fork has none of the threads that work, and whatever they had locked stays locked.
+    out = run("""
+        import os, threading, time, warnings, numpy as np, boxwood as bw
+        warnings.simplefilter("ignore")
+        scene = bw.load("soup:5000")
+        rng = np.random.default_rng(1)
+        rays = rng.uniform(size=(200_000, 3)), rng.normal(size=(200_000, 3))
+        expected, is_over = scene.closest_hit(*rays).t, threading.Event()
+        def ask():
+            while not is_over.is_set():
+                scene.closest_hit(*rays)
+        threading.Thread(target=ask).start()
+        children, same = [], 0
+        for _ in range(12):
+            time.sleep(0.03)
+            child = os.fork()
+            if child == 0:
+                again = bw.Scene.from_mesh(*scene.mesh())
+                answers = [scene.closest_hit(*rays, threads=n).t for n in (0, 2)] + [again.closest_hit(*rays).t]
+                os._exit(0 if all(np.array_equal(t, expected) for t in answers) else 1)
+            children.append(child)
+        end = time.monotonic() + 60
+        while children and time.monotonic() < end:
+            child, status = os.waitpid(children[0], os.WNOHANG)
+            if child:
+                children.pop(0)
+                same += status == 0
+            else:
+                time.sleep(0.01)
+        is_over.set()
+        for child in children:
+            os.kill(child, 9)
+        print(same)
+    """)
+    assert out == "12"
+
+
 @pytest.mark.parametrize("work", [
     "scene.closest_hit(origins, directions, threads={threads})",
     "scene.all_hits(origins, directions, threads={threads})",
@@ -191,6 +250,35 @@ def test_ctrl_c(work, threads):
             {work.format(threads=threads)}
         except KeyboardInterrupt:
             print("interrupted", bool(scene.any_hit([0.5, 0.5, 0.5], [0, 0, 1])) in (True, False))
+    """)
+    assert out == "interrupted True"
+
+
+@pytest.mark.parametrize("work", ["scene.surface_at(origins, down, hits, threads={threads})",
+                                  "surfaces.spawn(many, threads={threads})"])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_ctrl_c_among_surfaces(work, threads):
+    # Seconds of work, and the signal comes at its beginning.
+    out = run(f"""
+        import os, signal, threading, time, numpy as np, boxwood as bw
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        scene = bw.Scene.from_mesh(np.eye(3) * 9, [[0, 1, 2]])
+        origins, down = np.broadcast_to(np.array([1, 1, 9], "f4"), (6000, 1000, 3)), np.array([0, 0, -1], "f4")
+        hits = scene.closest_hit(origins, down)
+        surfaces = scene.surface_at(origins[0, 0], down, scene.closest_hit(origins[0, 0], down))
+        many = np.broadcast_to(down, (60_000_000, 3))
+        start = time.perf_counter()
+        {work.format(threads=threads)}
+        whole = time.perf_counter() - start
+        def interrupt():
+            time.sleep(0.1)
+            os.kill(os.getpid(), signal.SIGINT)
+        start = time.perf_counter()
+        threading.Thread(target=interrupt).start()
+        try:
+            {work.format(threads=threads)}
+        except KeyboardInterrupt:
+            print("interrupted", time.perf_counter() - start < 0.1 + 0.7 * (whole - 0.1))
     """)
     assert out == "interrupted True"
 

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -125,6 +126,17 @@ def test_wrong_shapes_are_refused():
         ray.intersects_any(np.zeros((2, 3)), np.ones((1, 3)))
     with pytest.raises(ValueError, match=r"points.*\(3,\)"):
         ray.contains_points([0, 0, 0])
+
+
+def test_odd_numbers():
+    broken = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [np.nan, 1, 0]], [[0, 1, 2]], process=False, validate=False)
+    with pytest.raises(ValueError, match=r"vertices\[2, 0\] is nan"):
+        RayMeshIntersector(broken).intersects_any([[0, 0, 5]], [[0, 0, -1]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        directions = [[0, 0, 0], [0, 0, np.nan], [0, 0, -np.inf], [0, 0, -1e300], [0, 0, -1e-300]]
+        is_hit = RayMeshIntersector(trimesh.creation.box()).intersects_any([[0.1, 0.2, 5]] * 5, directions)
+        assert is_hit.tolist() == [False] * 3 + [True] * 2
 
 
 def test_everywhere():

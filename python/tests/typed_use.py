@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     assert_type(scene.stats()["nodes"], float)
     assert_type(scene.camera, Optional[bw.Camera])
     assert_type(scene.mesh(0), tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]])
+    assert_type(scene.geometry_names, list[str])
     desc = bw.SceneDesc()
     assert_type(desc.add_mesh(np.zeros((3, 3)), [[0, 1, 2]], name="leaf"), int)
     desc.add_instance(0, np.eye(4))
