@@ -10,7 +10,6 @@ clamping, denoising or adaptive sampling.
 Needs `blender` (Debian: apt-get install blender python3-numpy); tried with 3.4.
 """
 
-import argparse
 import base64
 import json
 import math
@@ -19,7 +18,7 @@ import struct
 import tempfile
 from pathlib import Path
 
-from measure_noise import compare, render_boxwood, run
+from measure_noise import common_arguments, compare, render_boxwood, run
 
 # Runs inside of Blender: scene, threads, size, then samples, seed and file of each picture.
 INSIDE_BLENDER = """
@@ -206,16 +205,11 @@ def render_cycles(program, scene, threads, size, jobs):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("boxwood")
+    parser = common_arguments(__doc__.splitlines()[0], "cycles-comparison", 128, 2048)
     parser.add_argument("--blender", default="blender")
-    parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--lamps", type=int, default=3, choices=(1, 3))
     parser.add_argument("--mesh", help="an .obj of triangles, to stand in the room")
-    parser.add_argument("--samples", type=int, default=128, help="of the render that is measured")
-    parser.add_argument("--reference", type=int, default=2048, help="samples of the converged pictures")
-    parser.add_argument("--folder", default="cycles-comparison", help="where the pictures go")
     options = parser.parse_args()
     folder = Path(options.folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -11,7 +11,6 @@ filter; Mitsuba's bounces but the first five are ended by chance. Needs Mitsuba 
 3.9), and LLVM for its llvm variants (Debian: apt-get install libllvm15).
 """
 
-import argparse
 import itertools
 import re
 import time
@@ -19,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from measure_noise import compare, render_boxwood
+from measure_noise import common_arguments, compare, render_boxwood
 
 GREY = [0.18] * 3  # in place of pictures that are missing
 
@@ -168,15 +167,10 @@ class Translator:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("boxwood")
+    parser = common_arguments(__doc__.splitlines()[0], "mitsuba-comparison", 64, 512)
     parser.add_argument("scene", type=Path)
     parser.add_argument("--variant", default="llvm_ad_rgb", help="of Mitsuba")
-    parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--size", default="320x180")
-    parser.add_argument("--samples", type=int, default=64, help="of the render that is measured")
-    parser.add_argument("--reference", type=int, default=512, help="samples of the converged pictures")
-    parser.add_argument("--folder", default="mitsuba-comparison", help="where the pictures go")
     options = parser.parse_args()
     folder = Path(options.folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -6,6 +6,7 @@ programs do not matter much, and that of a sample, by the slope between two rend
 start. The error falls as 1 / samples; the time to a relative MSE of 0.01 follows.
 """
 
+import argparse
 import re
 import resource
 import subprocess
@@ -19,6 +20,17 @@ class Job(NamedTuple):
     samples: int
     file: Path
     is_reference: bool = False  # of samples that no other picture has
+
+
+def common_arguments(description, folder, samples, reference):
+    """A parser of what every comparison asks for, with these defaults."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("boxwood")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--samples", type=int, default=samples, help="of the render that is measured")
+    parser.add_argument("--reference", type=int, default=reference, help="samples of the converged pictures")
+    parser.add_argument("--folder", default=folder, help="where the pictures go")
+    return parser
 
 
 def run(command):
