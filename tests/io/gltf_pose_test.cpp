@@ -22,7 +22,7 @@ class GltfPose : public Gltf {
   /// comes after the mesh.
   void add_skin() {
     const int joints = bytes("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 3);
-    const int weights = floats("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, .5f, .5f, 0, 0}, 3);
+    const int weights = floats("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0}, 3);  // not all add up to 1
     const int bind = floats(
         "MAT4",
         {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, 2);
