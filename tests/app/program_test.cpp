@@ -203,11 +203,11 @@ TEST_F(Program, HelpFitsATerminal) {
 
 TEST_F(Program, InterruptWritesWhatThereIs) {
   // Not before it renders: a signal that came while it starts would be lost.
-  const Outcome outcome = run_shell(
-      "'" BOXWOOD_PROGRAM
-      "' render cornell -o a.png --size 64x64 --samples 1000000 --checkpoint 0.01 & job=$!; "
-      "while kill -0 $job 2>/dev/null && [ ! -e a.png.checkpoint ]; do sleep 0.01; done; "
-      "kill -INT $job; wait $job");
+  const Outcome outcome =
+      run_shell("'" BOXWOOD_PROGRAM
+                "' render cornell -o a.png --size 64x64 --samples 1000000 --checkpoint 0.01 & job=$!; "
+                "while kill -0 $job 2>/dev/null && [ ! -e a.png.checkpoint ]; do sleep 0.01; done; "
+                "kill -INT $job; wait $job");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("stopped"), std::string::npos) << outcome.err;
   EXPECT_GT(std::filesystem::file_size(folder_ / "a.png"), 100u);

@@ -2,49 +2,95 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <numeric>
+#include <span>
+
+#include "boxwood/core/radix_sort.h"
 
 namespace boxwood::io {
 namespace {
 
 constexpr std::size_t kMostTriangles = std::size_t(1) << 22;
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the smaller vertex first
+/// Some vertices beside each vertex, one list behind the other.
+class VertexLists {
+ public:
+  explicit VertexLists(std::size_t vertices) : ends_(vertices + 1) {}
 
-Edge edge_of(std::uint32_t a, std::uint32_t b) {
-  return a < b ? Edge{a, b} : Edge{b, a};
-}
+  /// First every pair is counted, then every pair is added, in the same order.
+  void count(std::uint32_t a, std::uint32_t b) {
+    ++ends_[a + 1];
+    ++ends_[b + 1];
+  }
+  void make_room() {
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    others_.resize(ends_.back());
+    begins_ = ends_;
+    ends_.assign(begins_.begin(), begins_.end() - 1);
+  }
+  void add(std::uint32_t a, std::uint32_t b) {
+    others_[ends_[a]++] = b;
+    others_[ends_[b]++] = a;
+  }
+  std::span<const std::uint32_t> operator[](std::uint32_t v) const {
+    return {others_.data() + begins_[v], others_.data() + ends_[v]};
+  }
 
-struct EdgeFaces {
-  int count = 0;
-  std::array<std::uint32_t, 2> opposite{};  // the third corners of the first two triangles
-  std::uint32_t middle = 0;                 // the vertex that stands on it after the step
+ private:
+  std::vector<std::uint32_t> begins_, ends_, others_;
 };
 
-/// Who stands around each vertex.
+struct Edge {
+  std::uint32_t first = 0, second = 0;  // the smaller vertex first
+  std::uint32_t triangles = 0;
+  std::array<std::uint32_t, 2> opposite{};  // the third corners of the first two triangles
+  bool is_crease() const { return triangles != 2; }
+};
+
+/// The edges of a mesh, in order, and who stands around each vertex.
 struct Neighbours {
   explicit Neighbours(const TriangleMesh& mesh) : ring(mesh.positions.size()), crease(mesh.positions.size()) {
-    for (const auto& t : mesh.indices)
-      for (int i = 0; i < 3; ++i) {
-        EdgeFaces& faces = edges[edge_of(t[i], t[(i + 1) % 3])];
-        if (faces.count < 2) faces.opposite[faces.count] = t[(i + 2) % 3];
-        ++faces.count;
-      }
-    for (const auto& [edge, faces] : edges) {
-      ring[edge.first].push_back(edge.second);
-      ring[edge.second].push_back(edge.first);
-      if (faces.count != 2) {
-        crease[edge.first].push_back(edge.second);
-        crease[edge.second].push_back(edge.first);
-      }
+    // Sides of the same edge come to stand beside each other.
+    const auto corner = [&](std::size_t side, std::size_t step) {
+      return mesh.indices[side / 3][(side + step) % 3];
+    };
+    edge_of_side.resize(3 * mesh.indices.size());
+    std::vector<std::uint32_t> sides(edge_of_side.size());
+    std::iota(sides.begin(), sides.end(), 0u);
+    std::vector<std::uint64_t> keys(sides.size());
+    for (std::size_t side = 0; side < keys.size(); ++side) {
+      const auto [low, high] = std::minmax({corner(side, 0), corner(side, 1)});
+      keys[side] = std::uint64_t(low) << 32 | high;
+    }
+    radix_sort(keys, sides, serial_executor());
+    edges.reserve(keys.size() / 2);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (i == 0 || keys[i] != keys[i - 1])
+        edges.push_back({static_cast<std::uint32_t>(keys[i] >> 32), static_cast<std::uint32_t>(keys[i])});
+      Edge& edge = edges.back();
+      if (edge.triangles < 2) edge.opposite[edge.triangles] = corner(sides[i], 2);
+      ++edge.triangles;
+      edge_of_side[sides[i]] = static_cast<std::uint32_t>(edges.size() - 1);
+    }
+
+    for (const Edge& edge : edges) {
+      ring.count(edge.first, edge.second);
+      if (edge.is_crease()) crease.count(edge.first, edge.second);
+    }
+    ring.make_room();
+    crease.make_room();
+    for (const Edge& edge : edges) {
+      ring.add(edge.first, edge.second);
+      if (edge.is_crease()) crease.add(edge.first, edge.second);
     }
   }
-  std::map<Edge, EdgeFaces> edges;
-  std::vector<std::vector<std::uint32_t>> ring, crease;
+  std::vector<Edge> edges;
+  std::vector<std::uint32_t> edge_of_side;  // three sides a triangle: from each corner to the next
+  VertexLists ring, crease;
 };
 
 /// The old vertex and the sum of some others, each weighed by `weight`; the rest is its own.
-Vec3 weigh(const TriangleMesh& mesh, std::uint32_t vertex, const std::vector<std::uint32_t>& others,
+Vec3 weigh(const TriangleMesh& mesh, std::uint32_t vertex, std::span<const std::uint32_t> others,
            float weight) {
   Vec3 sum = mesh.positions[vertex] * (1 - weight * static_cast<float>(others.size()));
   for (const std::uint32_t other : others) sum += mesh.positions[other] * weight;
@@ -61,7 +107,7 @@ TriangleMesh step(const TriangleMesh& mesh) {
   TriangleMesh out;
   out.positions.reserve(mesh.positions.size() + around.edges.size());
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    const auto &ring = around.ring[v], &crease = around.crease[v];
+    const auto ring = around.ring[v], crease = around.crease[v];
     if (crease.size() == 2)
       out.positions.push_back(weigh(mesh, v, crease, 1 / 8.0f));
     else if (!crease.empty() || ring.empty())
@@ -69,18 +115,21 @@ TriangleMesh step(const TriangleMesh& mesh) {
     else
       out.positions.push_back(weigh(mesh, v, ring, ring_weight(ring.size())));
   }
-  for (auto& [edge, faces] : around.edges) {
+  // A vertex in the middle of each edge, behind those that there were.
+  for (const Edge& edge : around.edges) {
     const Vec3 a = mesh.positions[edge.first], b = mesh.positions[edge.second];
-    faces.middle = static_cast<std::uint32_t>(out.positions.size());
-    out.positions.push_back(faces.count == 2 ? (a + b) * 0.375f + (mesh.positions[faces.opposite[0]] +
-                                                                   mesh.positions[faces.opposite[1]]) *
-                                                                      0.125f
-                                             : (a + b) * 0.5f);
+    out.positions.push_back(edge.is_crease() ? (a + b) * 0.5f
+                                             : (a + b) * 0.375f + (mesh.positions[edge.opposite[0]] +
+                                                                   mesh.positions[edge.opposite[1]]) *
+                                                                      0.125f);
   }
-  const auto middle = [&](std::uint32_t a, std::uint32_t b) { return around.edges.at(edge_of(a, b)).middle; };
   out.indices.reserve(4 * mesh.indices.size());
-  for (const auto& [a, b, c] : mesh.indices) {
-    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+  for (std::size_t t = 0; t < mesh.indices.size(); ++t) {
+    const auto middle = [&](std::size_t side) {
+      return static_cast<std::uint32_t>(mesh.positions.size() + around.edge_of_side[3 * t + side]);
+    };
+    const auto [a, b, c] = mesh.indices[t];
+    const std::uint32_t ab = middle(0), bc = middle(1), ca = middle(2);
     out.indices.insert(out.indices.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
   }
   return out;
@@ -91,7 +140,7 @@ void push_to_limit(TriangleMesh& mesh) {
   const Neighbours around(mesh);
   std::vector<Vec3> limit(mesh.positions.size());
   for (std::uint32_t v = 0; v < limit.size(); ++v) {
-    const auto &ring = around.ring[v], &crease = around.crease[v];
+    const auto ring = around.ring[v], crease = around.crease[v];
     if (crease.size() == 2)
       limit[v] = weigh(mesh, v, crease, 1 / 5.0f);
     else if (!crease.empty() || ring.empty())
