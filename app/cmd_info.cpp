@@ -102,6 +102,7 @@ void print_contents(const SceneReport& report, const SceneDesc& desc) {
              report.textures ? with_commas(report.texels) + " texels" : "");
   print_line("lights", "", lights(report));
   print_camera(desc.camera);
+  if (desc.bounces) print_line("bounces", "", fmt::format("{} at most, asks the file", *desc.bounces));
   print_line(
       "bounds", "",
       report.bounds.is_empty() ? "empty" : show(report.bounds.lower) + " to " + show(report.bounds.upper));
@@ -251,6 +252,7 @@ Json to_json(const SceneReport& report, const SceneDesc& desc) {
                    {"point", report.point_lights},
                    {"distant", report.distant_lights}};
   out["camera"] = to_json(desc.camera);
+  out["bounces"] = desc.bounces ? Json(*desc.bounces) : Json(nullptr);
   out["bounds"] = report.bounds.is_empty() ? Json(nullptr)
                                            : Json{{"lower", to_json(report.bounds.lower)},
                                                   {"upper", to_json(report.bounds.upper)}};

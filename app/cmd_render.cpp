@@ -1,4 +1,5 @@
 // cmd_render.cpp: boxwood render, a picture of a scene.
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -28,7 +29,8 @@ namespace {
 
 constexpr int kDefaultWidth = 1280, kDefaultHeight = 720;
 
-/// Reads the scene and builds its trees. A size that was not asked for becomes the file's own, else ours.
+/// Reads the scene and builds its trees. A size that was not asked for becomes the file's own, else ours; so
+/// do bounces that are asked for as the file wants them.
 Scene open_and_build(const RenderArguments& arguments, render::RenderOptions& options, ProgressBar& bar) {
   bar.update("reading", 0);
   SceneDesc desc = open_scene(arguments.scene, *options.executor);
@@ -44,6 +46,12 @@ Scene open_and_build(const RenderArguments& arguments, render::RenderOptions& op
     options.width = has_wish ? desc.camera->width : kDefaultWidth;
     options.height = has_wish ? desc.camera->height : kDefaultHeight;
     render::check(options);
+  }
+
+  if (arguments.bounces == kAsTheFile) {
+    if (!desc.bounces)
+      throw std::runtime_error("--bounces file: " + arguments.scene + " does not say how many it wants");
+    options.bounces = std::min(*desc.bounces, render::kMaxBounces);
   }
 
   BuildOptions build = build_options(arguments.build);

@@ -37,6 +37,13 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+std::optional<int> parse_bounces(const std::string& text) {
+  int bounces = -1;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), bounces);
+  const bool is_number = result.ec == std::errc() && result.ptr == text.data() + text.size();
+  return is_number && bounces >= 0 && bounces <= render::kMaxBounces ? std::optional(bounces) : std::nullopt;
+}
+
 std::string shard_problem(const std::string& text) {
   const auto shard = two_numbers(text, '/');
   const bool is_good = shard && shard->first >= 1 && shard->first <= shard->second;
@@ -88,6 +95,14 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--mode", arguments.mode, "path (light), color, normal, depth, occlusion,\ncost")
       ->capture_default_str()
       ->check(CLI::IsMember({"path", "color", "normal", "depth", "occlusion", "cost"}).description(""));
+  command
+      .add_option("--bounces", arguments.bounces,
+                  "Bounces of a path at most, 64 unless given;\nfile: as many as the scene's file asks for")
+      ->check([](const std::string& text) {
+        return text == kAsTheFile || parse_bounces(text)
+                   ? std::string()
+                   : "'" + text + "' is neither a number from 0 to 64 nor 'file'";
+      });
   command
       .add_option(
           "--layers", arguments.layers,
@@ -150,6 +165,7 @@ render::RenderOptions options_from(const RenderArguments& arguments) {
   render::RenderOptions options;
   options.mode = render::mode_from_name(arguments.mode);
   options.filter = render::filter_from_name(arguments.filter);
+  options.bounces = parse_bounces(arguments.bounces).value_or(render::kMaxBounces);
   options.noise = arguments.noise;
   options.samples = arguments.samples > 0   ? arguments.samples
                     : arguments.noise > 0   ? kNoiseLimit

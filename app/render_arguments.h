@@ -18,7 +18,7 @@ struct RenderArguments {
   std::string size;
   int samples = 0;  // 0: not given
   double noise = 0, seconds = 0;
-  std::string mode = "path", filter = "tent";
+  std::string bounces, mode = "path", filter = "tent";
   std::vector<std::string> layers;
   PictureLook look;
   std::string preview;
@@ -29,6 +29,9 @@ struct RenderArguments {
   std::string build = "balanced";
   bool is_quiet = false;
 };
+
+/// What --bounces says for as many as the scene's file asks for.
+inline constexpr char kAsTheFile[] = "file";
 
 struct Size {
   int width, height;

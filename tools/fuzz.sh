@@ -20,7 +20,7 @@ done
 
 cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE=RelWithDebInfo \
   -DBOXWOOD_BUILD_TESTS=OFF -DBOXWOOD_BUILD_FUZZ=ON -DBUILD_SHARED_LIBS=OFF \
-  -DCMAKE_CXX_FLAGS="-O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-unknown-warning-option" \
+  -DCMAKE_CXX_FLAGS="-O1 -fsanitize=fuzzer-no-link,address,undefined -fsanitize-coverage-ignorelist=$PWD/tests/fuzz/not_traced.txt -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-unknown-warning-option" \
   >/dev/null
 cmake --build build/fuzz --target boxwood_fuzz
 

@@ -85,6 +85,7 @@ TEST_F(Keeping, ACheckpointOfAnotherPictureIsRefused) {
   const std::string resume = arguments + "--resume ";
   says(resume + "--samples 301", "samples: 300, not 301");
   says(resume + "--samples 300 --filter box", "filter: tent, not box");
+  says(resume + "--samples 300 --bounces 3", "bounces: 64, not 3");
   says(resume + "--samples 300 --layers depth", "layers: none, not depth");
   says(resume + "--samples 300 --noise 0.1", "noise: 0, not 0.1");
   says("render cornell -o a.exr --size 41x40 --samples 300 --resume --quiet", "size: 40x40, not 41x40");

@@ -56,6 +56,9 @@ TEST_F(Program, WrongUsageIsCodeTwo) {
   expect_refusal("render cornell cornell -o a.png", 2, "cornell");
   expect_refusal("render --noise 0", 2, "--noise");
   expect_refusal("render --time -1", 2, "--time");
+  expect_refusal("render --bounces 65", 2, "65");
+  expect_refusal("render --bounces -1", 2, "-1");
+  expect_refusal("render --bounces 4.5", 2, "4.5");
   expect_refusal("render --filter round", 2, "round");
   expect_refusal("render --layers fog -o a.exr", 2, "fog");
   expect_refusal("render --layers depth -o a.png", 2, "--layers");
@@ -150,6 +153,24 @@ TEST_F(Program, TheSamePictureForAnyNumberOfThreads) {
   EXPECT_EQ(pixels("one.exr").size(), 60u * 60 * 3);
   EXPECT_TRUE(pixels("one.exr") == pixels("three.exr"));
   EXPECT_TRUE(pixels("one.exr") == pixels("best.exr")) << "nor does it depend on the tree";
+}
+
+TEST_F(Program, LightGoesAsFarAsIsAsked) {
+  expect_refusal("render cornell -o a.png --bounces file", 1, "cornell does not say");
+  write("room.pbrt",
+        "Integrator \"path\" \"integer maxdepth\" 2 Camera \"perspective\" WorldBegin\n"
+        "AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true\n"
+        "Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8] Shape \"sphere\" AttributeEnd\n");
+  const auto pixels = [&](const std::string& options) {
+    EXPECT_EQ(run("render room.pbrt --size 16x16 --samples 4 --quiet -o a.exr " + options).exit_code, 0);
+    return io::read_image(path("a.exr")).pixels;
+  };
+  const auto as_the_file = pixels("--bounces file"), freely = pixels("");
+  EXPECT_TRUE(as_the_file == pixels("--bounces 2"));
+  EXPECT_TRUE(freely == pixels("--bounces 64"));
+  EXPECT_LT(*std::max_element(as_the_file.begin(), as_the_file.end()),
+            *std::min_element(freely.begin(), freely.end()));
+  EXPECT_NE(run("info room.pbrt").out.find("2 at most"), std::string::npos);
 }
 
 TEST_F(Program, SaysWhatItDidUnlessQuiet) {

@@ -125,6 +125,13 @@ TEST_F(Pbrt, OtherCamerasStandInTheSamePlace) {
   expect_error("Camera \"orthographic\" \"float screenwindow\" [1 -1 -1 1]", 1, "left < right");
 }
 
+TEST_F(Pbrt, BouncesAreThoseOfTheIntegratorOrFive) {
+  EXPECT_EQ(scene("Integrator \"volpath\" \"integer maxdepth\" 17 WorldBegin " + kTriangle).bounces, 17);
+  EXPECT_EQ(scene("Integrator \"path\" WorldBegin " + kTriangle).bounces, 5);
+  EXPECT_EQ(scene("WorldBegin " + kTriangle).bounces, 5);
+  expect_error("\nIntegrator \"path\" \"integer maxdepth\" -1", 2, "expected 0 or more");
+}
+
 TEST_F(Pbrt, CameraCoordinateSystemPlacesThingsBeforeTheCamera) {
   const SceneDesc desc = scene(
       "LookAt 3 4 5  0 0 0  0 1 0 Camera \"perspective\" WorldBegin\n"

@@ -35,6 +35,23 @@ TEST(Path, FurnaceInsideASphereThatShinesAndReflects) {
   EXPECT_NEAR(mean_radiance(scene, Ray{{1, 2, 3}, 0, {0.6f, 0, 0.8f}}, 1 << 14).x, 0.5f / 0.4f, 0.01f);
 }
 
+TEST(Path, EachBounceThatIsAllowedAddsItsTermOfTheSeries) {
+  // E (1 + albedo + albedo^2 + ...), as many terms as there are surfaces on the way.
+  SceneDesc desc;
+  Material material = material_of_kind(Kind::matte, splat(0.6f));
+  material.emission = splat(0.5f);
+  material.emits_from_both_sides = true;
+  desc.add(std::vector<Sphere>{{{1, 2, 3}, 4}}, desc.add(material));
+  const Scene scene(std::move(desc));
+  float expected = 0.5f, term = 0.5f;
+  for (int bounces = 0; bounces <= 6; ++bounces) {
+    EXPECT_NEAR(mean_radiance(scene, Ray{{1, 2, 3}, 0, {0.6f, 0, 0.8f}}, 1 << 13, bounces).x, expected, 0.01f)
+        << bounces;
+    term *= 0.6f;
+    expected += term;
+  }
+}
+
 TEST(Path, EveryMaterialInAFurnace) {
   // Under the same light from everywhere, nothing convex can look brighter;
   // what loses nothing looks as bright.

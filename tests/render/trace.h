@@ -10,8 +10,8 @@
 namespace boxwood::render {
 
 /// The mean radiance along `ray` over `samples` samples.
-inline Vec3 mean_radiance(const Scene& scene, const Ray& ray, int samples) {
-  const auto tracer = make_path_tracer(scene, Camera{});
+inline Vec3 mean_radiance(const Scene& scene, const Ray& ray, int samples, int bounces = kMaxBounces) {
+  const auto tracer = make_path_tracer(scene, Camera{}, 0, bounces);
   std::array<double, 3> sum{};
   RayCounts rays;
   for (int s = 0; s < samples; ++s) {

@@ -17,6 +17,8 @@ namespace boxwood::io {
 namespace pbrt {
 namespace {
 
+constexpr int kBounces = 5;  // of pbrt, where a file does not say
+
 class Interpreter {
  public:
   Interpreter(const std::filesystem::path& path, Executor& executor)
@@ -27,6 +29,7 @@ class Interpreter {
         materials_(textures_, parser_, warnings_) {}
 
   SceneDesc run() {
+    desc_.bounces = kBounces;
     Directive directive;
     while (parser_.next(directive)) {
       try {
@@ -64,6 +67,7 @@ class Interpreter {
   void interpret(Directive& directive);
   void add_defaults(Directive& directive, std::string_view target) const;
   void set_camera(const Directive& directive);
+  void set_bounces(const Directive& directive);
   void add_shape(const Directive& directive);
   void begin_object(const Directive& directive);
   void place_object(const Directive& directive);
@@ -174,12 +178,14 @@ void Interpreter::interpret(Directive& directive) {
     set_camera(directive);
   } else if (name == "Film") {
     film_ = make_film(directive);
+  } else if (name == "Integrator") {
+    set_bounces(directive);
   } else if (name == "MakeNamedMedium") {
     define_medium(directive);
   } else if (name == "MediumInterface") {
     set_media(directive);
   }
-  // What is left (samplers, integrators, filters, options, WorldEnd) says how to render, not what.
+  // What is left (samplers, filters, options, WorldEnd) says how to render, not what.
 }
 
 void Interpreter::set_camera(const Directive& directive) {
@@ -187,6 +193,13 @@ void Interpreter::set_camera(const Directive& directive) {
   desc_.camera = make_camera(directive, camera_from_world, desc_.camera, warnings_);
   exposure_time_ = exposure_time(directive);
   state_.name_coordinate_system("camera", inverse(camera_from_world));
+}
+
+void Interpreter::set_bounces(const Directive& directive) {
+  const int bounces = directive.parameters.integer("maxdepth", kBounces);
+  if (bounces < 0)
+    fail(directive.place, "\"maxdepth\" is " + std::to_string(bounces) + ", expected 0 or more");
+  desc_.bounces = bounces;
 }
 
 void Interpreter::add_shape(const Directive& directive) {

@@ -86,6 +86,7 @@ Facts facts_of(const RenderJob& job) {
           {"mode", std::string(mode_name(options.mode))},
           {"samples", std::to_string(options.samples)},
           {"shard", std::to_string(options.shard.index) + "/" + std::to_string(options.shard.count)},
+          {"bounces", std::to_string(options.bounces)},
           {"filter", std::string(filter_name(options.filter))},
           {"noise", noise},
           {"layers", layers.empty() ? "none" : layers},

@@ -67,7 +67,8 @@ RenderJob::RenderJob(const Scene& scene, const RenderOptions& options)
       lens_(camera_, options.width, options.height),
       filter_(options.filter),
       integrator_(options.mode == Mode::path
-                      ? make_path_tracer(scene, camera_, pixel_angle(camera_, options.width, options.height))
+                      ? make_path_tracer(scene, camera_, pixel_angle(camera_, options.width, options.height),
+                                         options.bounces)
                       : make_aov(scene, options.mode)),
       features_(scene, options.layers),
       first_sample_(share_end(options, options.shard.index - 1)),

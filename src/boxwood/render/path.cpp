@@ -18,9 +18,8 @@
 namespace boxwood::render {
 namespace {
 
-// Bounds for light that is caught in glass, and for rays that pass through clear surfaces one behind the
-// other; roulette ends other paths long before.
-constexpr int kMaxBounces = 64, kMaxSteps = 1024;
+/// A bound for rays that pass through clear surfaces one behind the other.
+constexpr int kMaxSteps = 1024;
 /// Hits are sorted by so many groups: 0 hit nothing, the others are materials.
 constexpr std::size_t kMiss = 0, kGroups = 256;
 
@@ -77,8 +76,13 @@ struct Step {
 
 class PathTracer final : public Integrator {
  public:
-  PathTracer(const Scene& scene, const Camera& camera, float pixel_angle)
-      : scene_(scene), surfaces_(scene), lights_(scene, camera), shadows_(scene), pixel_angle_(pixel_angle) {
+  PathTracer(const Scene& scene, const Camera& camera, float pixel_angle, int bounces)
+      : scene_(scene),
+        surfaces_(scene),
+        lights_(scene, camera),
+        shadows_(scene),
+        pixel_angle_(pixel_angle),
+        bounces_(bounces) {
     const SceneDesc& desc = scene.description();
     for (const Material& material : desc.materials) materials_.emplace_back(material);
     for (const Instance& instance : placed_instances(desc)) {
@@ -274,7 +278,7 @@ class PathTracer final : public Integrator {
     const PreparedMaterial* prepared = &this->prepared(id);
     if (prepared->is_emissive) gather_emission(work, place, ray.direction, hit, step.surfaces[i]);
     ++path.steps;
-    if (path.bounce == kMaxBounces || path.steps == kMaxSteps) {
+    if (path.bounce == bounces_ || path.steps == kMaxSteps) {
       work.end(place);
       return Kind::none;
     }
@@ -391,6 +395,7 @@ class PathTracer final : public Integrator {
   Lights lights_;
   Shadows shadows_;
   float pixel_angle_;
+  int bounces_;
   std::vector<PreparedMaterial> materials_;
   std::vector<std::uint8_t> group_of_instance_;
   PreparedMaterial default_material_{Material{}};
@@ -398,8 +403,9 @@ class PathTracer final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_path_tracer(const Scene& scene, const Camera& camera, float pixel_angle) {
-  return std::make_unique<PathTracer>(scene, camera, pixel_angle);
+std::unique_ptr<Integrator> make_path_tracer(const Scene& scene, const Camera& camera, float pixel_angle,
+                                             int bounces) {
+  return std::make_unique<PathTracer>(scene, camera, pixel_angle, bounces);
 }
 
 }  // namespace boxwood::render

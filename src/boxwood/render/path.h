@@ -9,13 +9,15 @@
 #pragma once
 
 #include "boxwood/render/integrator.h"
+#include "boxwood/render/render.h"
 #include "boxwood/scene/scene.h"
 
 namespace boxwood::render {
 
 /// The integrator of Mode::path. `camera` places the plain sky that a scene without any light is shown under;
-/// `pixel_angle` is how wide a pixel is, in radians, for the width at which textures are looked up. Keeps a
-/// reference to `scene`.
-std::unique_ptr<Integrator> make_path_tracer(const Scene& scene, const Camera& camera, float pixel_angle = 0);
+/// `pixel_angle` is how wide a pixel is, in radians, for the width at which textures are looked up; paths end
+/// after so many bounces, if not before. Keeps a reference to `scene`.
+std::unique_ptr<Integrator> make_path_tracer(const Scene& scene, const Camera& camera, float pixel_angle = 0,
+                                             int bounces = kMaxBounces);
 
 }  // namespace boxwood::render

@@ -32,6 +32,8 @@ void check(const RenderOptions& options) {
          ", expected at most " + std::to_string(kMaxPixels) + " pixels in all");
   if (options.samples < 1 || options.samples > kMaxSamples)
     fail(std::to_string(options.samples) + " samples, expected 1 to " + std::to_string(kMaxSamples));
+  if (options.bounces < 0 || options.bounces > kMaxBounces)
+    fail(std::to_string(options.bounces) + " bounces, expected 0 to " + std::to_string(kMaxBounces));
   if (!(options.noise >= 0) || !std::isfinite(options.noise))
     fail("the noise is " + std::to_string(options.noise) + ", expected 0 or more");
 

@@ -46,11 +46,15 @@ struct Shard {
 inline constexpr int kMaxSide = 32768;                 ///< Pixels on a side of a picture.
 inline constexpr std::int64_t kMaxPixels = 1ll << 27;  ///< Pixels of a picture.
 inline constexpr int kMaxSamples = 1 << 20;            ///< Samples of a pixel.
+inline constexpr int kMaxBounces = 64;                 ///< Of a path; roulette ends most long before.
 
 struct RenderOptions {
   Mode mode = Mode::path;
   int width = 1280, height = 720;
   int samples = 64;  ///< Rays through each pixel; powers of two are spread best. One goes through the middle.
+  /// Light that is scattered more often than this on its way to the eye is left out: 1 shows what lamps send
+  /// by way of one surface, 0 only what shines itself. (A mirror scatters, too.)
+  int bounces = kMaxBounces;
   Filter filter = Filter::tent;  ///< How far light counts beyond the edges of a pixel.
   std::vector<Layer> layers;     ///< What else the picture holds of each pixel, each at most once.
   /// Above 0, a tile gets no more samples when its noise (noise.h) is at most this; `samples` is then a

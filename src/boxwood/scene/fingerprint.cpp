@@ -211,7 +211,9 @@ void add(Stirrer& stirrer, const DistantLight& light) {
 std::uint64_t fingerprint(const SceneDesc& desc) {
   Stirrer stirrer;
   const auto& [geometries, instances, materials, textures, point_lights, spot_lights, distant_lights,
-               environments, camera, sky, is_lit_by_glow, name, warnings] = desc;
+               environments, camera, sky, is_lit_by_glow, bounces, name, warnings] = desc;
+  // The bounces are a wish; those that are made count with the picture.
+  (void)bounces;
   add_all(stirrer, geometries, instances, materials, textures, point_lights, spot_lights, distant_lights,
           environments, camera, sky, is_lit_by_glow);
   return stirrer.value();
