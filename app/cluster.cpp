@@ -15,16 +15,11 @@ bool is_in_cluster() {
 #ifdef BOXWOOD_HAS_MPI
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <list>
-#include <thread>
-
-#define OMPI_SKIP_MPICXX 1
-#include <mpi.h>
 
 #include "boxwood/render/checkpoint.h"
 #include "boxwood/render/shard.h"
+#include "rank_mail.h"
 
 namespace boxwood::app {
 namespace {
@@ -52,64 +47,11 @@ void append(std::vector<char>& bytes, const T* values, std::size_t count) {
   bytes.insert(bytes.end(), first, first + count * sizeof(T));
 }
 
-void send(int rank, Tag tag, const std::vector<char>& bytes = {}) {
-  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD);
-}
-
-/// Messages that leave while the sender goes on; their bytes stay here until they were taken.
-class Outbox {
- public:
-  void send(int rank, Tag tag, std::vector<char> bytes) {
-    (void)is_empty();
-    Letter& letter = letters_.emplace_back(Letter{std::move(bytes), MPI_REQUEST_NULL});
-    MPI_Isend(letter.bytes.data(), static_cast<int>(letter.bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD,
-              &letter.request);
-  }
-  /// Whether all were taken.
-  bool is_empty() {
-    for (int is_taken = 1; is_taken && !letters_.empty();) {
-      MPI_Test(&letters_.front().request, &is_taken, MPI_STATUS_IGNORE);
-      if (is_taken) letters_.pop_front();
-    }
-    return letters_.empty();
-  }
-
- private:
-  struct Letter {
-    std::vector<char> bytes;
-    MPI_Request request;
-  };
-  std::list<Letter> letters_;  // none of them may move
-};
-
-/// Leaves the processor to others for a moment, as what waits inside of MPI would not.
-void pause() {
-  std::this_thread::sleep_for(std::chrono::microseconds(200));
-}
-
-struct Message {
-  int rank, tag;
-  std::vector<char> bytes;
-};
-
-/// The next message, if one has arrived.
-bool receive(Message& message) {
-  int is_there = 0, size = 0;
-  MPI_Status status;
-  MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &is_there, &status);
-  if (!is_there) return false;
-  MPI_Get_count(&status, MPI_BYTE, &size);
-  message = {status.MPI_SOURCE, status.MPI_TAG, std::vector<char>(static_cast<std::size_t>(size))};
-  MPI_Recv(message.bytes.data(), size, MPI_BYTE, message.rank, message.tag, MPI_COMM_WORLD,
-           MPI_STATUS_IGNORE);
-  return true;
-}
-
-/// The same, but waits for one.
-Message wait_for_message() {
-  Message message;
-  while (!receive(message)) pause();
-  return message;
+void say_hello(Hello hello, const std::string& text) {
+  std::vector<char> bytes(sizeof(hello) + text.size());
+  std::memcpy(bytes.data(), &hello, sizeof(hello));
+  std::copy(text.begin(), text.end(), bytes.begin() + sizeof(hello));
+  send(0, kHello, bytes);
 }
 
 Executor& executor_of(const RenderJob& job) {
@@ -191,10 +133,7 @@ struct Cluster::State {
 };
 
 Cluster::Cluster() : state_(std::make_unique<State>()) {
-  int provided = 0;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-  MPI_Comm_rank(MPI_COMM_WORLD, &state_->rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &state_->size);
+  join_ranks(state_->rank, state_->size);
   state_->helpers.resize(static_cast<std::size_t>(state_->size));
 }
 
@@ -208,7 +147,7 @@ Cluster::~Cluster() {
       left -= message.tag == kBye ? 1 : 0;
     }
   }
-  MPI_Finalize();
+  leave_ranks();
 }
 
 bool Cluster::is_leader() const {
@@ -268,12 +207,7 @@ RenderJob::Crew Cluster::crew(const RenderJob& job, std::function<void(const std
 
 void Cluster::help(const RenderJob& job) {
   Executor& executor = executor_of(job);
-  const Hello hello{executor.concurrency()};
-  const std::string facts = render::text_of(render::facts_of(job));
-  std::vector<char> greeting;
-  append(greeting, &hello, 1);
-  append(greeting, facts.data(), facts.size());
-  send(0, kHello, greeting);
+  say_hello({executor.concurrency()}, render::text_of(render::facts_of(job)));
 
   // Results wait for a leader who renders, too, while we go on with the tasks that are here already.
   Outbox outbox;
@@ -288,16 +222,12 @@ void Cluster::help(const RenderJob& job) {
     });
     for (std::vector<char>& result : results) outbox.send(0, kResult, std::move(result));
   }
-  while (!outbox.is_empty()) pause();
+  outbox.wait_until_taken();
   send(0, kBye);
 }
 
 void Cluster::cannot_help(const std::string& why) {
-  const Hello hello{0};
-  std::vector<char> greeting;
-  append(greeting, &hello, 1);
-  append(greeting, why.data(), why.size());
-  send(0, kHello, greeting);
+  say_hello({0}, why);
   while (wait_for_message().tag != kQuit) {
   }
   send(0, kBye);

@@ -3,7 +3,7 @@
 // Rank 0 leads: it hands out units of the present round and adds up what comes back, and renders itself
 // meanwhile. Whoever is done gets more, so a slow rank does less; and what it was given near the end of a
 // round, others render too, so nobody waits for it. The film takes each unit once, whoever brought it first:
-// the picture has the bits of a render on one machine. The only file that knows Open MPI.
+// the picture has the bits of a render on one machine.
 #pragma once
 
 #include <memory>

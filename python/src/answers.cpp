@@ -64,7 +64,7 @@ void lend_to_system(MemoryBlock& block) {
 
 }  // namespace
 
-Block allocate_block(std::size_t size) {
+Block allocate_block(std::size_t size) try {
   constexpr std::size_t kMinSpareBytes = std::size_t(1) << 20;  // below, memory is cheap
   constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
   size = std::max<std::size_t>(size, 64);
@@ -82,6 +82,8 @@ Block allocate_block(std::size_t size) {
     }
     delete old;
   });
+} catch (const std::bad_alloc&) {
+  throw NoRoomForResults();
 }
 
 void expect_dimensions(nb::handle array, std::size_t count) {

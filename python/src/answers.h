@@ -22,6 +22,12 @@ namespace boxwood::python {
 /// Memory that results and their arrays share.
 using Block = std::shared_ptr<MemoryBlock>;
 
+/// Becomes Python's MemoryError, with these words.
+class NoRoomForResults final : public std::bad_alloc {
+ public:
+  const char* what() const noexcept override { return "the results need more memory than there is"; }
+};
+
 /// A block of so many bytes, perhaps one that an earlier result has left: clearing fresh pages costs a tenth
 /// of the time in which a million rays are answered, and more where the system is short of them. One block of
 /// at most kMaxSpareBytes is kept for that, where the system can take its pages back while nobody uses them.
@@ -30,17 +36,18 @@ constexpr std::size_t kMaxSpareBytes = std::size_t(1) << 30;
 #else
 constexpr std::size_t kMaxSpareBytes = std::size_t(64) << 20;
 #endif
-/// Throws std::bad_alloc.
+/// Throws NoRoomForResults.
 Block allocate_block(std::size_t size);
 
 /// Lays columns one behind the other, each on a cache line of its own.
 class Layout {
  public:
-  /// Throws std::bad_alloc when the size is more than a number holds.
+  /// Throws NoRoomForResults when the size is more than a number holds.
   template <class T>
   std::size_t add(std::size_t count) {
     constexpr std::size_t kLine = 64;
-    if (count > (std::numeric_limits<std::size_t>::max() - size_ - kLine) / sizeof(T)) throw std::bad_alloc();
+    if (count > (std::numeric_limits<std::size_t>::max() - size_ - kLine) / sizeof(T))
+      throw NoRoomForResults();
     const std::size_t at = size_;
     size_ = (size_ + count * sizeof(T) + kLine - 1) / kLine * kLine;
     return at;

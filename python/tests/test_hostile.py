@@ -79,11 +79,11 @@ def test_more_rays_than_memory_counts(scene):
     rows = lambda *shape: np.lib.stride_tricks.as_strided(np.zeros(3, "i1"), (*shape, 3), [0] * len(shape) + [1])
     for first, second in [((2**40,), (2**20, 1)), ((2**31, 1), (2**31,)), ((2**31, 1), (2**32,)), ((2**32, 1), (2**32,))]:
         for ask in (scene.closest_hit, scene.any_hit, scene.all_hits, scene.count_hits):
-            with pytest.raises(MemoryError):
+            with raises(MemoryError, "results need more memory"):
                 ask(rows(*first), rows(*second))
-        with pytest.raises(MemoryError):
+        with raises(MemoryError, "results need more memory"):
             scene.closest_point(rows(*first), max_distance=rows(*second)[..., 0])
-    with pytest.raises(MemoryError):
+    with raises(MemoryError, "results need more memory"):
         scene.surface_at(ABOVE, DOWN, scene.closest_hit(ABOVE, DOWN)).spawn(rows(2**60))
     assert scene.closest_hit(rows(2**40, 0), rows(2**40, 1, 1)).shape == (2**40, 2**40, 0)
 
