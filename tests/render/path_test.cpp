@@ -24,31 +24,28 @@ TEST(Path, ConvexMatteUnderAConstantSky) {
   EXPECT_NEAR(radiance.z, 0.70f, 1e-5f);
 }
 
-TEST(Path, FurnaceInsideASphereThatShinesAndReflects) {
-  // L = E + albedo L, so L = E / (1 - albedo), through many bounces, roulette and next-event estimation.
+/// A sphere that shines and reflects, from the middle of its inside.
+Vec3 inside_a_furnace(float emission, float albedo, int samples, int bounces = kMaxBounces) {
   SceneDesc desc;
-  Material material = material_of_kind(Kind::matte, splat(0.6f));
-  material.emission = splat(0.5f);
+  Material material = material_of_kind(Kind::matte, splat(albedo));
+  material.emission = splat(emission);
   material.emits_from_both_sides = true;
   desc.add(std::vector<Sphere>{{{1, 2, 3}, 4}}, desc.add(material));
   const Scene scene(std::move(desc));
-  EXPECT_NEAR(mean_radiance(scene, Ray{{1, 2, 3}, 0, {0.6f, 0, 0.8f}}, 1 << 14).x, 0.5f / 0.4f, 0.01f);
+  return mean_radiance(scene, Ray{{1, 2, 3}, 0, {0.6f, 0, 0.8f}}, samples, bounces);
+}
+
+TEST(Path, FurnaceInsideASphereThatShinesAndReflects) {
+  // L = E + albedo L, so L = E / (1 - albedo), through many bounces, roulette and next-event estimation.
+  EXPECT_NEAR(inside_a_furnace(0.5f, 0.6f, 1 << 14).x, 0.5f / 0.4f, 0.01f);
 }
 
 TEST(Path, EachBounceThatIsAllowedAddsItsTermOfTheSeries) {
-  // E (1 + albedo + albedo^2 + ...), as many terms as there are surfaces on the way.
-  SceneDesc desc;
-  Material material = material_of_kind(Kind::matte, splat(0.6f));
-  material.emission = splat(0.5f);
-  material.emits_from_both_sides = true;
-  desc.add(std::vector<Sphere>{{{1, 2, 3}, 4}}, desc.add(material));
-  const Scene scene(std::move(desc));
-  float expected = 0.5f, term = 0.5f;
-  for (int bounces = 0; bounces <= 6; ++bounces) {
-    EXPECT_NEAR(mean_radiance(scene, Ray{{1, 2, 3}, 0, {0.6f, 0, 0.8f}}, 1 << 13, bounces).x, expected, 0.01f)
-        << bounces;
-    term *= 0.6f;
+  // L = E (1 + albedo + albedo^2 + ...), as many terms as there are surfaces on the way.
+  float expected = 0, term = 0.5f;
+  for (int bounces = 0; bounces <= 6; ++bounces, term *= 0.6f) {
     expected += term;
+    EXPECT_NEAR(inside_a_furnace(0.5f, 0.6f, 1 << 13, bounces).x, expected, 0.01f) << bounces;
   }
 }
 
