@@ -99,6 +99,8 @@ bool are_triangles_hit(const Scene::Parts& parts, const Ray& ray, bool& is_hit) 
 }
 
 Hit add_shapes(const Scene::Parts& parts, const Ray& ray, const Hit& triangle) {
+  if (!parts.shapes_ball.may_meet(ray, min(ray.t_max, triangle.t))) return triangle;
+
   // Begin with the triangle, as if the walk had met it first.
   const PreparedRay prepared(ray, parts.bounds);
   if (!prepared.is_valid()) return {};
@@ -115,6 +117,7 @@ Hit add_shapes(const Scene::Parts& parts, const Ray& ray, const Hit& triangle) {
 }
 
 bool is_shape_hit(const Scene::Parts& parts, const Ray& ray) {
+  if (!parts.shapes_ball.may_meet(ray, ray.t_max)) return false;
   const PreparedRay prepared(ray, parts.bounds);
   if (!prepared.is_valid()) return false;
   AnySink sink{prepared.t_max};

@@ -250,8 +250,14 @@ std::unique_ptr<const Scene::Parts> build_parts(SceneDesc desc, const BuildOptio
   parts->bounds = unite(parts->world.bounds, parts->top_level.bounds());
 
   // Choose who answers.
-  for (const Part& object : parts->objects) parts->has_placed_shapes |= !object.shapes.empty();
+  Box3 shapes_box = parts->world.shape_bvh.bounds();
+  for (const Placement& placement : parts->placements)
+    if (!parts->objects[placement.part_index].shapes.empty()) {
+      parts->has_placed_shapes = true;
+      shapes_box.extend(placement.world_box);
+    }
   parts->has_shapes = parts->has_placed_shapes || !parts->world.shapes.empty();
+  parts->shapes_ball = Ball(shapes_box, parts->bounds);
   parts->is_only_triangles = !parts->has_shapes && parts->placements.empty();
   if (parts->world.triangles.is_ordinary() &&
       (!parts->placed_trees.has_triangles() || parts->placed_trees.is_ordinary()))

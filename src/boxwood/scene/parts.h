@@ -6,6 +6,7 @@
 // shared by its placements, and a top-level tree organises the placements.
 #pragma once
 
+#include "boxwood/scene/ball.h"
 #include "boxwood/scene/scene.h"
 #include "boxwood/simd/box_tree.h"
 #include "boxwood/simd/kernels.h"
@@ -77,7 +78,8 @@ struct Scene::Parts {
   /// ordinary.
   const simd::Kernels* kernels = nullptr;
   bool has_shapes = false;         ///< Other than triangles, anywhere;
-  bool has_placed_shapes = false;  ///< and below placements.
+  bool has_placed_shapes = false;  ///< and below placements;
+  Ball shapes_ball;                ///< around all of them.
   bool is_only_triangles = false;  ///< The world's: no other shape and no placement.
   double build_ms = 0;
   std::string closest_point_obstacle;  ///< Why closest_point cannot be answered; empty when it can.
