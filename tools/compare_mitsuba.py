@@ -4,8 +4,9 @@
     tools/compare_mitsuba.py build/release/boxwood kitchen/scene.pbrt [--variant llvm_ad_rgb] [--threads 2]
                              [--size 320x180] [--samples 64] [--reference 512] [--folder DIR]
 
-Translates a scene of pbrt version 3 for Mitsuba 3, as far as the public collection of such scenes needs it: meshes,
-matte, substrate, metal, mirror, glass and uber, pictures as colors, and area lights. Renders it with both on the
+Translates a pbrt scene for Mitsuba 3, as far as the public collection of such scenes needs it: meshes and spheres,
+matte, substrate, metal, mirror, glass and uber (in version 4 diffuse, coateddiffuse, conductor and dielectric),
+pictures as colors, and area lights. Renders it with both on the
 processor and compares time and noise as measure_noise.py says. Both trace paths of up to 64 bounces through a box
 filter; Mitsuba's bounces but the first five are ended by chance. Needs Mitsuba 3 (`pip install mitsuba`; tried with
 3.9), and LLVM for its llvm variants (Debian: apt-get install libllvm15).
@@ -22,6 +23,10 @@ from measure_noise import common_arguments, compare, render_boxwood
 
 GREY = [0.18] * 3  # in place of pictures that are missing
 
+# What version 4 calls otherwise.
+MATERIALS = {"diffuse": "matte", "coateddiffuse": "substrate", "conductor": "metal", "dielectric": "glass"}
+NUMBERS = {"glass": {"eta": "index"}, "matte": {"reflectance": "Kd"}, "substrate": {"reflectance": "Kd"}}
+
 
 class Parameters(dict):
     """`"rgb Kd" [ 1 1 1 ]` and the like, by name: numbers as lists, names as text."""
@@ -32,7 +37,7 @@ class Parameters(dict):
             kind, name = word[1:-1].split()
             first = next(words)
             listed = itertools.takewhile(lambda token: token != "]", words) if first == "[" else [first]
-            values = [value[1:-1] if value[0] == '"' else float(value) for value in listed]
+            values = [value.strip('"') if kind in ("string", "bool", "texture") else float(value) for value in listed]
             self[name] = values[0] if kind in ("string", "bool", "texture") else values
 
 
@@ -83,10 +88,10 @@ class Translator:
         self.matrix = np.eye(4)
 
     def AttributeBegin(self, name, tokens):
-        self.saved.append((self.material, self.light))
+        self.saved.append((self.material, self.light, self.matrix))
 
     def AttributeEnd(self, name, tokens):
-        self.material, self.light = self.saved.pop()
+        self.material, self.light, self.matrix = self.saved.pop()
 
     def Texture(self, name, tokens):
         path = self.folder / Parameters(tokens[3:])["filename"]
@@ -106,11 +111,12 @@ class Translator:
 
     def Shape(self, name, tokens):
         given = Parameters(tokens[1:])
-        if tokens[0] == '"plymesh"':
-            shape = {"type": "ply", "filename": str(self.folder / given["filename"])}
+        if tokens[0] == '"sphere"':
+            shape = {"type": "sphere", "radius": given["radius"][0]}
         else:
-            shape = {"type": "ply", "filename": str(self.write_mesh(given))}
-        shape["flip_tex_coords"] = True  # pbrt's pictures stand on v = 0
+            path = self.folder / given["filename"] if tokens[0] == '"plymesh"' else self.write_mesh(given)
+            shape = {"type": "ply", "filename": str(path), "flip_tex_coords": True}  # pbrt's pictures stand on v = 0
+        shape["to_world"] = self.mi.ScalarTransform4f(self.matrix)
         shape["bsdf"] = self.material
         if self.light:
             shape["emitter"] = self.light
@@ -138,6 +144,8 @@ class Translator:
 
     def bsdf(self, given):
         kind, width = given["type"], given.get("uroughness", [0])[0]
+        kind = MATERIALS.get(kind, kind)
+        given = {NUMBERS.get(kind, {}).get(name, name): value for name, value in given.items()}
         if width and given.get("remaproughness") != "false":
             raise SystemExit("a roughness that pbrt maps to a width: not translated")
         rough = {"distribution": "ggx", "alpha": width} if width else {}
