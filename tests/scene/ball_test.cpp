@@ -1,5 +1,6 @@
 // The ball around the few shapes that are not triangles never hides one of them.
 #include "boxwood/scene/ball.h"
+
 #include "scene/scene_checks.h"
 
 namespace boxwood::test {
@@ -23,9 +24,9 @@ TEST(Ball, LetsAllRaysPassThatComeNearAndFewOthers) {
     if (far > 1000) continue;
     const Vec3 beside = normalize(cross(target, random.direction())) * (3 * radius + 0.01f * far);
     ++passed;
-    kept += ball.may_meet({near.origin, 0, target + beside * 2}, kInfinity);           // past it
-    kept += ball.may_meet({near.origin, 0, -target}, kInfinity);                       // away from it
-    kept += far > 10 * radius && ball.may_meet(towards, 0.5f / scale);                 // not as far
+    kept += ball.may_meet({near.origin, 0, target + beside * 2}, kInfinity);  // past it
+    kept += ball.may_meet({near.origin, 0, -target}, kInfinity);              // away from it
+    kept += far > 10 * radius && ball.may_meet(towards, 0.5f / scale);        // not as far
   }
   EXPECT_LT(kept, passed / 20);
 }
@@ -69,7 +70,8 @@ TEST(Ball, ScenesWithAFewShapesAnswerAsIfTheyHadNoTrees) {
   desc.add({desc.add(std::vector<Sphere>{sphere}), Affine3::identity(), {}});
   desc.add({desc.add(std::vector<Disk>{disk}), Affine3::identity(), {}});
   desc.add({desc.add(std::vector<Cuboid>{{{-0.2f, -0.2f, -0.2f}, {0.2f, 0.2f, 0.2f}}}),
-            Affine3::translation({4, 4.5f, 4}) * Affine3::rotation({1, 2, 3}, 40), {}});
+            Affine3::translation({4, 4.5f, 4}) * Affine3::rotation({1, 2, 3}, 40),
+            {}});
   const Scene scene(std::move(desc));
   std::vector<Ray> rays = mixed_rays(scene.bounds(), 4000, 9);
   for (int i = 0; i < 20000; ++i) {
