@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 
@@ -11,6 +12,7 @@
 
 #include <nanobind/stl/string.h>
 
+#include "boxwood/core/lanes.h"
 #include "docstrings.h"
 #include "past_cache.h"
 #include "pickles.h"
@@ -37,6 +39,12 @@ Vec3 vec(const float* from) {
 /// None is all bits set, which is -1.
 std::int32_t signed_id(std::uint32_t value) {
   return static_cast<std::int32_t>(value);
+}
+
+/// The bytes of a hit or a ray from one of its fields on.
+template <class T>
+const char* part_of(const T& whole, std::size_t offset) {
+  return reinterpret_cast<const char*>(&whole) + offset;
 }
 
 template <class T>
@@ -145,24 +153,44 @@ void HitColumns::write(std::size_t begin, std::span<const Ray> rays, std::span<c
   // A few at a time: row by row into the nearest cache, and from there column by column to where they stay.
   constexpr std::size_t kStep = 128;
   struct Staged {
-    float t[kStep], uv[2 * kStep], normal[3 * kStep], position[3 * kStep];
-    std::int32_t primitive_id[kStep], geometry_id[kStep], instance_id[kStep], part[kStep];
+    // Three floats are stored by four; what is too much, the next three cover.
+    float t[kStep], uv[2 * kStep], normal[3 * kStep + 1], position[3 * kStep + 1];
+    std::int32_t instance_id[kStep], geometry_id[kStep], primitive_id[kStep], part[kStep];
   } s;
+  const Lanes infinity = Lanes::all(kInfinity), nothing = Lanes::all(kNan);
   for (std::size_t first = 0; first < hits.size(); first += kStep) {
     const std::size_t count = std::min(kStep, hits.size() - first), row = begin + first;
     for (std::size_t i = 0; i < count; ++i) {
       const Hit& hit = hits[first + i];
+      const Ray& ray = rays[first + i];
       s.t[i] = hit.t;
-      s.primitive_id[i] = signed_id(hit.primitive_id.value);
-      s.geometry_id[i] = signed_id(hit.geometry_id.value);
+      std::memcpy(s.uv + 2 * i, part_of(hit, offsetof(Hit, u)), 2 * sizeof(float));
+      // Without a branch, because who hits is hard to foresee.
+      const Lanes t = Lanes::all(hit.t), normal = Lanes::load(part_of(hit, offsetof(Hit, normal)));
+      select_less(t, infinity, normal, nothing).store(s.normal + 3 * i);
+      const Lanes origin = Lanes::load(part_of(ray, offsetof(Ray, origin))),
+                  direction = Lanes::load(part_of(ray, offsetof(Ray, direction)));
+      select_less(t, infinity, origin + direction * t, nothing).store(s.position + 3 * i);
+    }
+    // The four numbers behind the normal, of four hits at once.
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+      const auto numbers = [&](std::size_t k) {
+        return Lanes::load(part_of(hits[first + i + k], offsetof(Hit, instance_id)));
+      };
+      const Lanes even_low = zip_low(numbers(0), numbers(2)), even_high = zip_high(numbers(0), numbers(2)),
+                  odd_low = zip_low(numbers(1), numbers(3)), odd_high = zip_high(numbers(1), numbers(3));
+      zip_low(even_low, odd_low).store(s.instance_id + i);
+      zip_high(even_low, odd_low).store(s.geometry_id + i);
+      zip_low(even_high, odd_high).store(s.primitive_id + i);
+      zip_high(even_high, odd_high).store(s.part + i);
+    }
+    for (; i < count; ++i) {
+      const Hit& hit = hits[first + i];
       s.instance_id[i] = signed_id(hit.instance_id.value);
+      s.geometry_id[i] = signed_id(hit.geometry_id.value);
+      s.primitive_id[i] = signed_id(hit.primitive_id.value);
       s.part[i] = static_cast<std::int32_t>(hit.part);
-      s.uv[2 * i] = hit.u;
-      s.uv[2 * i + 1] = hit.v;
-      // Without a branch, because who hits is hard to foresee: a miss adds NaN to what is there.
-      const float nothing = hit.is_hit() ? 0.0f : kNan;
-      put(s.normal + 3 * i, hit.normal + splat(nothing));
-      put(s.position + 3 * i, rays[first + i].at(hit.t + nothing));
     }
     const auto copy = [&](auto& column, const auto* from, std::size_t width = 1) {
       auto* const to = column.data + width * row;

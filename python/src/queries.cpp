@@ -2,11 +2,13 @@
 #include "queries.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <mutex>
 
 #include "answers.h"
+#include "boxwood/core/lanes.h"
 #include "boxwood/scene/parts.h"
 #include "docstrings.h"
 
@@ -22,6 +24,29 @@ RayRows::RayRows(nb::handle origins, nb::handle directions, nb::handle t_min, nb
 }
 
 void RayRows::fill(std::size_t begin, std::span<Ray> rays) const {
+  if (rays.empty()) return;
+  const char *origin = origins_.packed_triples(), *direction = directions_.packed_triples();
+  const std::optional<float> t_min = t_min_.constant(), t_max = t_max_.constant();
+  if (origin && direction && t_min && t_max) {
+    // The usual arrays: three floats by four, but for the last, behind which there may be nothing.
+    constexpr std::size_t kRow = 3 * sizeof(float);
+    origin += begin * kRow;
+    direction += begin * kRow;
+    for (Ray& ray : rays.first(rays.size() - 1)) {
+      const Lanes from = Lanes::load(origin), along = Lanes::load(direction);
+      from.store(&ray.origin);
+      ray.t_min = *t_min;
+      along.store(&ray.direction);
+      ray.t_max = *t_max;
+      origin += kRow;
+      direction += kRow;
+    }
+    rays.back() = {{}, *t_min, {}, *t_max};
+    std::memcpy(&rays.back().origin, origin, kRow);
+    std::memcpy(&rays.back().direction, direction, kRow);
+    return;
+  }
+
   // A Ray is eight floats (core/ray.h). A few at a time, so that the nearest cache holds them through four
   // reads.
   constexpr std::size_t kStride = sizeof(Ray) / sizeof(float), kStep = 256;

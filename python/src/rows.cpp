@@ -210,6 +210,19 @@ void Rows::merge_axes() {
   leading_ = std::move(merged);
 }
 
+const char* Rows::packed_triples() const {
+  const bool are_floats =
+      number_ == Number::f32 && row_.size() == 1 && row_[0].size == 3 && row_[0].stride == sizeof(float);
+  return are_floats && leading_.size() == 1 && leading_[0].stride == 3 * sizeof(float) ? data_ : nullptr;
+}
+
+std::optional<float> Rows::constant() const {
+  if (!row_.empty() || leading_.size() != 1 || leading_[0].stride != 0) return std::nullopt;
+  float number = 0;
+  read(0, 1, &number, 1);
+  return number;
+}
+
 template <class T, class Out>
 void Rows::read_as(std::size_t begin, std::size_t count, Out* out, std::size_t stride) const {
   const auto load = [](const char* from) {

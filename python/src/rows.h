@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,11 @@ class Rows {
   /// Repeats rows as NumPy's broadcasting does, so that shape() becomes `shape`. Precondition: it fits
   /// (broadcast_shapes).
   void broadcast_to(const Shape& shape);
+
+  /// Where rows of three stand one behind the other as they are, in float32; null when they do not.
+  const char* packed_triples() const;
+  /// The number that every row is, when it is one number. Precondition: there is a row.
+  std::optional<float> constant() const;
 
   /// Writes the numbers of rows [begin, begin + count), row i to out + i * stride. Any thread may call, with
   /// or without the GIL.

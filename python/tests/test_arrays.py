@@ -122,6 +122,24 @@ def test_long_and_short_batches_agree(count, rng):
         np.testing.assert_array_equal(every.t[every.offsets[i]:every.offsets[i + 1]], SCENE.all_hits(origins[i], directions[i]).t)
 
 
+@pytest.mark.parametrize("count", [*range(1, 10), *range(126, 134), 4095, 4096, 4097])
+def test_packed_float32_is_read_as_any_other(count, rng):
+    origins, directions = rng.normal(size=(2, count, 3)).astype(np.float32)
+    packed = SCENE.closest_hit(origins, directions, t_max=7)
+    other = SCENE.closest_hit(np.asfortranarray(origins, float), np.asfortranarray(directions, float), t_max=7)
+    for column in ("t", "uv", "normal", "position", "primitive_id", "geometry_id", "instance_id", "part"):
+        np.testing.assert_array_equal(getattr(packed, column), getattr(other, column))
+    is_hit = packed.primitive_id >= 0
+    expected = origins + directions * packed.t[:, None]
+    np.testing.assert_array_equal(packed.position[is_hit], expected[is_hit])
+    assert np.isnan(packed.position[~is_hit]).all() and np.isnan(packed.normal[~is_hit]).all()
+    np.testing.assert_array_equal(np.isfinite(packed.normal).all(1), is_hit)
+    for i in (0, count // 2, count - 1):  # as one ray alone, which goes to no four
+        one = SCENE.closest_hit(origins[i], directions[i], t_max=7)
+        for column in ("t", "normal", "primitive_id", "geometry_id", "instance_id", "part"):
+            np.testing.assert_array_equal(getattr(one, column), getattr(packed, column)[i])
+
+
 def test_empty_scene():
     scene = bw.Scene.from_mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
     hits = scene.closest_hit(np.zeros((4, 3)), [0, 0, 1])
