@@ -4,7 +4,6 @@
 #pragma once
 
 #include <list>
-#include <memory>
 #include <vector>
 
 namespace boxwood::app {

@@ -6,10 +6,10 @@
 
 Translates a pbrt scene for Mitsuba 3, as far as the public collection of such scenes needs it: meshes and spheres,
 matte, substrate, metal, mirror, glass and uber (in version 4 diffuse, coateddiffuse, conductor and dielectric),
-pictures as colors, and area lights. Renders it with both on the
-processor and compares time and noise as measure_noise.py says. Both trace paths of up to 64 bounces through a box
-filter; Mitsuba's bounces but the first five are ended by chance. Needs Mitsuba 3 (`pip install mitsuba`; tried with
-3.9), and LLVM for its llvm variants (Debian: apt-get install libllvm15).
+pictures as colors, and area lights. Renders it with both on the processor and compares time and noise as
+measure_noise.py says. Both trace paths of up to 64 bounces through a box filter; Mitsuba's bounces but the first five
+are ended by chance. Needs Mitsuba 3 (`pip install mitsuba`; tried with 3.9), and LLVM for its llvm variants (Debian:
+apt-get install libllvm15).
 """
 
 import itertools

@@ -2,6 +2,7 @@
 #include "queries.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -34,9 +35,10 @@ void RayRows::fill(std::size_t begin, std::span<Ray> rays) const {
     direction += begin * kRow;
     for (Ray& ray : rays.first(rays.size() - 1)) {
       const Lanes from = Lanes::load(origin), along = Lanes::load(direction);
-      from.store(&ray.origin);
+      char* const bytes = reinterpret_cast<char*>(&ray);
+      from.store(bytes + offsetof(Ray, origin));
       ray.t_min = *t_min;
-      along.store(&ray.direction);
+      along.store(bytes + offsetof(Ray, direction));
       ray.t_max = *t_max;
       origin += kRow;
       direction += kRow;

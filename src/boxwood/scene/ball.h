@@ -3,8 +3,9 @@
 // Scenes of triangles often have some other shapes, such as lamps that are spheres. A walk to them takes as
 // long as half of a ray among a million triangles; most rays keep clear of all of them, and a ball around
 // them says so at once, without a division. It may err on one side only: a walk reports a crossing at most
-// 20 u (R + |o|) away from the shape's box on each axis (u = 2^-24; see core/prepared_ray.h), and the ball is
-// wider by seven times as much.
+// 20 u (R + |o|) away from the shape's box on each axis, 35 u (R + |o|) in all (u = 2^-24; see
+// core/prepared_ray.h). The ball is wider by 128 u (|o| + the largest coordinate of the scene), |o| in the
+// sum norm, which is more than three times as much and covers the rounding of the test itself.
 #pragma once
 
 #include <cmath>

@@ -248,8 +248,8 @@ struct SceneDesc {
   std::optional<Sky> sky;        ///< None: black, or the renderer's plain sky when there is no light at all.
   /// False: what glows is a detail of a model, such as a screen, and no reason to leave out the plain sky.
   bool is_lit_by_glow = true;
-  std::optional<int>
-      bounces;  ///< How often the file wants light to be scattered, at most; none: it does not say.
+  /// How often the file wants light to be scattered, at most. None: it does not say.
+  std::optional<int> bounces;
   std::string name;
   std::vector<std::string> warnings;  ///< What a loader could not use and went on without; one line each.
 
